@@ -1,14 +1,10 @@
 //! Checks what decides between values: `a when b, otherwise c`, and comparisons with words.
 
-use super::Checker;
 use super::conditions::impossible;
 use super::evaluate::words;
 use super::expressions::origin;
-use super::plan::{DatumKind, Expr, Kind, Operator, Origin, Scalar, Type};
-use super::scope::Scope;
-use crate::problem::{error, warning};
-use crate::source::{Span, Spanned};
-use crate::syntax::phrase::{Node, Number, Phrase};
+use super::prelude::*;
+use crate::syntax::phrase::Number;
 
 impl Checker<'_> {
     /// The value of the first case whose condition holds, else of the last: `a when b, otherwise c`.
@@ -76,7 +72,7 @@ impl Checker<'_> {
                     Some(zone) => format!("no case of this applies in zone {zone}"),
                     None => "no case of this can apply with the parameters as set".into(),
                 };
-                self.problems.push(error("no-case", says, span));
+                self.tell(error("no-case", says, span));
             }
             return otherwise;
         }
@@ -118,8 +114,11 @@ impl Checker<'_> {
             return Some(());
         }
         let (a, b) = (first.ty.in_words(), other.ty.in_words());
-        let says = format!("one case is {a}, another {b}");
-        self.refuse(error("unit-mismatch", says, other).label(b).also(first, a))
+        self.refuse(
+            problem!("unit-mismatch", other, "one case is {a}, another {b}")
+                .label(b)
+                .also(first, a),
+        )
     }
 
     /// `a is b`, of words, conditions or numbers.
@@ -165,9 +164,15 @@ impl Checker<'_> {
             Node::Path(word) | Node::Quoted(word) => word.clone(),
             Node::Number(Number { value, unit: None }) => value.to_string(),
             _ => {
-                let says =
-                    format!("`{}` is a word and can only be compared with a word", words(left));
-                return self.refuse(error("not-a-word", says, right).also(left, "a word"));
+                return self.refuse(
+                    problem!(
+                        "not-a-word",
+                        right,
+                        "`{}` is a word and can only be compared with a word",
+                        words(left)
+                    )
+                    .also(left, "a word"),
+                );
             }
         };
         // A choice parameter stands for its value, unless a word with its name is among the choices.
@@ -177,9 +182,8 @@ impl Checker<'_> {
         if is_campaign {
             self.campaigns.push(Spanned::new(word.clone(), right.place()));
         } else if !choices.contains(&word) {
-            let says = format!("`{}` cannot be `{word}`", words(left));
             return self.refuse(
-                error("unknown-choice", says, right)
+                problem!("unknown-choice", right, "`{}` cannot be `{word}`", words(left))
                     .also(left, format!("one of {}", choices.join(", ")))
                     .suggest(&word, choices),
             );

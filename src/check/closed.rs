@@ -3,14 +3,10 @@
 
 use std::collections::BTreeSet;
 
-use super::Checker;
 use super::functions::is_signal_function;
 use super::names::Assignment;
-use super::plan::Origin;
-use super::scope::Scope;
+use super::prelude::*;
 use crate::catalog::{MetricEntry, Reducer, Statistic};
-use crate::syntax::phrase::{Node, Phrase};
-use crate::units::Dimension;
 
 impl Checker<'_> {
     /// Checks aliases, signals, estimates and definitions that nothing uses.

@@ -1,20 +1,13 @@
 //! Checks the values of a quantity and how they are compared: what gives its rows.
 
-use super::Checker;
 use super::evaluate::{number, words};
 use super::idle::Pair;
 use super::names::bare_word;
-use super::plan::{Evaluation, Expr, InputSide, Pairing, Position, Records, Side, Step, Valued};
+use super::prelude::*;
 use super::records::Compare;
-use super::scope::Scope;
 use super::steps::after;
 use crate::catalog::{Best, DIFFERENCES};
-use crate::problem::error;
-use crate::source::{Located, Source, Span};
-use crate::syntax::document::{Block, Field, Text};
-use crate::syntax::from_pest;
-use crate::syntax::phrase::Phrase;
-use crate::units::Dimension;
+use crate::source::Source;
 
 /// The result of checking value and difference, or the metric, of a quantity.
 pub struct Compared {
@@ -67,10 +60,8 @@ impl Checker<'_> {
         {
             if Some(*other) != result {
                 let wanted = result.map_or_else(String::new, Dimension::in_words);
-                return self.refuse(error("unit-mismatch", format!(
-                    "the values of one quantity must have the same dimension: the first is {wanted}, this is {}",
-                    other.in_words()
-                ), field)
+                return self.refuse(problem!("unit-mismatch", field, "the values of one quantity must have the same dimension: the first is {wanted}, this is {}",
+                    other.in_words())
                         .also(fields[0], wanted));
             }
         }
@@ -106,8 +97,11 @@ impl Checker<'_> {
             };
             let mut inputs = values.iter().flat_map(|value| value.inputs.iter().flatten());
             if let Some(input) = inputs.find(|input| input.side == other) {
-                let says = format!("the values are {side}; the other record is not read");
-                return self.refuse(error("record-not-read", says, &input.span));
+                return self.refuse(problem!(
+                    "record-not-read",
+                    &input.span,
+                    "the values are {side}; the other record is not read"
+                ));
             }
             let comparison = match of.record {
                 None => format!("{side} values"),
@@ -212,9 +206,13 @@ impl Checker<'_> {
                     || self.is_failed(word))
             {
                 let differences = DIFFERENCES.iter().map(|(name, _)| *name);
-                let says = format!("`{choice}` is not a difference of two values");
                 return self.refuse(
-                    error("unknown-difference", says, field).suggest(&choice, differences),
+                    problem!(
+                        "unknown-difference",
+                        field,
+                        "`{choice}` is not a difference of two values"
+                    )
+                    .suggest(&choice, differences),
                 );
             }
         }

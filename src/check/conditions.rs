@@ -2,7 +2,7 @@
 //! of them always holds.
 
 use super::evaluate::shape;
-use super::plan::{Expr, Kind, Operator, Scalar, Type};
+use super::prelude::*;
 
 /// Largest number of combinations of tests that are examined.
 const MOST: usize = 256;

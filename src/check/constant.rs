@@ -1,14 +1,10 @@
 //! Values that are the same whatever the records are: `0 * correlation`.
 
-use super::Checker;
 use super::evaluate::number;
-use super::names::normalised;
-use super::plan::{Expr, Input, InputSide, Kind, Scalar, Taken};
+use super::prelude::*;
 use super::values::{Nothing, Values};
 use crate::metrics::rounded;
-use crate::problem::error;
 use crate::result::Reason;
-use crate::source::Located;
 
 /// Number of sets of inputs that are tried. Arithmetic that gives the same for three sets without a
 /// simple ratio is the same for all.

@@ -1,15 +1,11 @@
 //! Checks blocks that declare the content of records, of the vehicle file and of the table of
 //! sections: places, data, channels, signals.
 
-use super::names::{Place, Signal, normalised};
-use super::plan::{Datum, DatumKind, DatumRange, Scalar};
+use super::names::{Place, Signal};
 use super::positions::{is_each, joined};
-use super::{Checker, if_written};
-use crate::problem::error;
-use crate::source::{Located, Span};
-use crate::syntax::document::{Block, Field};
+use super::prelude::*;
+use crate::syntax::families;
 use crate::syntax::phrase::Pick;
-use crate::syntax::{families, from_pest};
 
 /// Largest number of positions of a place: the wheels of a train of sixty vehicles. A signal at
 /// several places has the product of their numbers.
@@ -23,27 +19,25 @@ impl Checker<'_> {
         let field = self.required(block, "members")?;
         let written = from_pest::list(&field.value, self.problems)?;
         if written.len() > MOST_MEMBERS {
-            let says = format!(
-                "`{name}` has {} positions; there can be at most {MOST_MEMBERS}",
-                written.len()
-            );
             let help = "declare the positions that are compared; put the others into another place";
-            return self.refuse(error("too-large", says, field).help(help));
+            return self.refuse(
+                problem!(
+                    "too-large",
+                    field,
+                    "`{name}` has {} positions; there can be at most {MOST_MEMBERS}",
+                    written.len()
+                )
+                .help(help),
+            );
         }
         let mut members: Vec<String> = Vec::new();
         for member in written {
             let place = member.place();
             if let Some(sign) = member.node.chars().find(|c| matches!(c, '-' | '.')) {
-                self.problems.push(error("bad-name", format!(
-                    "`{}` cannot be a position of `{name}`: in an expression, `{sign}` is not read as part of a name",
-                    member.node
-                ), &place));
+                self.tell(problem!("bad-name", &place, "`{}` cannot be a position of `{name}`: in an expression, `{sign}` is not read as part of a name",
+                    member.node));
             } else if members.contains(&member.node) {
-                self.problems.push(error(
-                    "duplicate-name",
-                    format!("`{}` is named twice", member.node),
-                    &place,
-                ));
+                self.tell(problem!("duplicate-name", &place, "`{}` is named twice", member.node));
             } else {
                 members.push(member.node);
             }
@@ -52,25 +46,24 @@ impl Checker<'_> {
         for field in block.fields_named("alias") {
             let Some(alias) = from_pest::alias(&field.value, self.problems) else { continue };
             if members.contains(&alias.name.node) {
-                self.problems.push(
-                    error(
+                self.tell(
+                    problem!(
                         "name-clash",
-                        format!(
-                            "`{}` is both a position of `{name}` and an alias",
-                            alias.name.node
-                        ),
                         &alias.name,
+                        "`{}` is both a position of `{name}` and an alias",
+                        alias.name.node
                     )
                     .also(block, "the members"),
                 );
             }
             for (member, _) in &alias.cases {
                 if !members.contains(&member.node) {
-                    self.problems.push(
-                        error(
+                    self.tell(
+                        problem!(
                             "unknown-place",
-                            format!("`{}` is not a position of `{name}`", member.node),
                             member,
+                            "`{}` is not a position of `{name}`",
+                            member.node
                         )
                         .suggest(&member.node, &members),
                     );
@@ -104,10 +97,11 @@ impl Checker<'_> {
             }
             _ => {
                 return self.refuse(
-                    error(
+                    problem!(
                         "missing-field",
-                        format!("{} `{name}` needs a field `in` or `one of`", block.kind.text),
                         block,
+                        "{} `{name}` needs a field `in` or `one of`",
+                        block.kind.text
                     )
                     .help("`in kN` for a number, `one of right, left` for a word"),
                 );
@@ -130,18 +124,18 @@ impl Checker<'_> {
     /// The range of a number of the vehicle, in its unit.
     fn datum_range(&mut self, name: &str, kind: &DatumKind, field: &Field) -> Option<DatumRange> {
         let DatumKind::Number(unit) = kind else {
-            return self.refuse(error(
+            return self.refuse(problem!(
                 "unknown-field",
-                format!("`{name}` is a choice of words and cannot have a range"),
                 &field.key,
+                "`{name}` is a choice of words and cannot have a range"
             ));
         };
         let [low, high] = self.range_ends(name, unit.dimension, field, None)?;
         if low > high {
-            return self.refuse(error(
+            return self.refuse(problem!(
                 "out-of-range",
-                format!("the range of `{name}` has its upper end below its lower end"),
                 field,
+                "the range of `{name}` has its upper end below its lower end"
             ));
         }
         Some(DatumRange {
@@ -172,14 +166,12 @@ impl Checker<'_> {
             DatumKind::Number(unit) => {
                 let (value, dimension) = self.constant(&field.value)?;
                 if dimension != unit.dimension {
-                    let problem = error(
+                    let problem = problem!(
                         "unit-mismatch",
-                        format!(
-                            "`{name}` is {}, its default is {}",
-                            unit.dimension.in_words(),
-                            dimension.in_words()
-                        ),
                         field,
+                        "`{name}` is {}, its default is {}",
+                        unit.dimension.in_words(),
+                        dimension.in_words()
                     )
                     .label(dimension.in_words());
                     return self.refuse(match block.field("in") {
@@ -206,10 +198,10 @@ impl Checker<'_> {
                     vec!["true".into(), "false".into()]
                 };
                 return self.refuse(
-                    error(
+                    problem!(
                         "unknown-choice",
-                        format!("`{word}` is not one of the words of `{name}`"),
                         field,
+                        "`{word}` is not one of the words of `{name}`"
                     )
                     .suggest(word, &words),
                 );
@@ -238,10 +230,10 @@ impl Checker<'_> {
             return Some(());
         }
         self.refuse(
-            error(
+            problem!(
                 "unknown-choice",
-                format!("`{NOT_STATED}` can only be written for vehicle data"),
                 field,
+                "`{NOT_STATED}` can only be written for vehicle data"
             )
             .help("remove the line: without a default, an empty cell is a missing value"),
         )
@@ -257,8 +249,8 @@ impl Checker<'_> {
             None => false,
             Some(("track", _)) => true,
             Some((other, field)) => {
-                self.problems.push(
-                    error("unknown-record", format!("`{other}` is not a kind of record"), field)
+                self.tell(
+                    problem!("unknown-record", field, "`{other}` is not a kind of record")
                         .help("write `record track` for the track file; without `record`, the channel is in the records of simulation and measurement"),
                 );
                 false
@@ -299,11 +291,11 @@ impl Checker<'_> {
         let span = field.map_or_else(|| block.place(), Field::place);
         for place in places {
             if !pattern.contains(&format!("{{{place}}}")) {
-                self.problems.push(
-                    error(
+                self.tell(
+                    problem!(
                         "pattern",
-                        format!("`{pattern}` gives the same column for every {place}"),
                         &span,
+                        "`{pattern}` gives the same column for every {place}"
                     )
                     .help(format!("write {{{place}}} where the column name contains it")),
                 );
@@ -312,11 +304,11 @@ impl Checker<'_> {
         for part in pattern.split('{').skip(1) {
             let inside = part.split('}').next().unwrap_or("");
             if !places.iter().any(|place| place == inside) {
-                self.problems.push(
-                    error(
+                self.tell(
+                    problem!(
                         "pattern",
-                        format!("`{{{inside}}}` in `{pattern}` is not a place of this channel"),
                         &span,
+                        "`{{{inside}}}` in `{pattern}` is not a place of this channel"
                     )
                     .suggest(inside, places),
                 );

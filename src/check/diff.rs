@@ -1,16 +1,11 @@
 //! Differences in meaning between two protocols, rule by rule.
 
-use crate::problem::Problems;
-use crate::result::Deviation;
-use crate::syntax::document::{Block, Document, Field, Text};
-use crate::syntax::from_pest;
-use crate::syntax::keys::{self, Sort};
-use crate::syntax::phrase::Pick;
-use crate::units::{Dimension, Unit};
-
-use super::names::normalised;
 use super::overlay::slot;
 use super::positions::is_each;
+use super::prelude::*;
+use crate::result::Deviation;
+use crate::syntax::keys::{self, Sort};
+use crate::syntax::phrase::Pick;
 
 /// Rules added, removed or changed from the first document to the second, in the order of the
 /// second.

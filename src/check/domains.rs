@@ -1,13 +1,6 @@
 //! Checks domains: what spans them, and by what sections are told apart.
 
-use super::plan::{Coordinate, DatumKind, Domain, Expr, Kind};
-use super::scope::Scope;
-use super::{Checker, all};
-use crate::problem::error;
-use crate::source::Located;
-use crate::syntax::document::Block;
-use crate::syntax::from_pest;
-use crate::syntax::phrase::{At, Phrase};
+use super::prelude::*;
 
 impl Checker<'_> {
     /// What sections cover: what spans it, and by what words sections are told apart.
@@ -40,13 +33,14 @@ impl Checker<'_> {
             Some(unit) => {
                 let found = self.unit(&unit.to_text())?;
                 if found.dimension != dimension {
-                    let says = format!(
+                    return self.refuse(problem!(
+                        "unit-mismatch",
+                        unit,
                         "`{words}` is {}, `{}` is a unit of {}",
                         dimension.in_words(),
                         unit.place().text(),
                         found.dimension.in_words()
-                    );
-                    return self.refuse(error("unit-mismatch", says, unit));
+                    ));
                 }
                 found
             }
@@ -84,9 +78,13 @@ impl Checker<'_> {
         let name = &key.node;
         let index = self.column_called("column", name, key)?;
         if matches!(self.names.columns[index].kind, DatumKind::Number(_)) {
-            let says = format!("`{name}` is a number, and groups are told apart by words");
             return self.refuse(
-                error("not-a-word", says, key).help("let it be one of those that span the domain"),
+                problem!(
+                    "not-a-word",
+                    key,
+                    "`{name}` is a number, and groups are told apart by words"
+                )
+                .help("let it be one of those that span the domain"),
             );
         }
         Some(index)

@@ -1,15 +1,8 @@
 //! Checks estimates: expressions over the values of a group of rows and over the data of its
 //! sections.
 
-use super::plan::{DataReducer, Estimate, EstimateKind, Expr, Kind, OfGroup, Origin, Taking, Type};
-use super::scope::Scope;
-use super::{Checker, if_written};
+use super::prelude::*;
 use crate::catalog::{STATISTICS, Statistic};
-use crate::problem::error;
-use crate::source::{Located, Span};
-use crate::syntax::document::{Block, Field};
-use crate::syntax::phrase::{At, Node, Phrase};
-use crate::units::Dimension;
 
 /// Name of the number of independent units of a group.
 const COUNT: &str = "n";
@@ -151,8 +144,10 @@ impl Checker<'_> {
             }
             let known = STATISTICS.iter().map(|entry| entry.name).chain(["each"]);
             let known = known.chain(self.names.estimates.keys().map(String::as_str));
-            let says = format!("`{name}` is not a statistic");
-            self.problems.push(error("unknown-statistic", says, written).suggest(name, known));
+            self.tell(
+                problem!("unknown-statistic", written, "`{name}` is not a statistic")
+                    .suggest(name, known),
+            );
         }
         found
     }
@@ -167,8 +162,11 @@ impl Checker<'_> {
         if statistic != Statistic::Each {
             return Some(statistic);
         }
-        let says = format!("`each` stands for every single value and is not a statistic of a {of}");
-        self.refuse(error("each-value", says, at))
+        self.refuse(problem!(
+            "each-value",
+            at,
+            "`each` stands for every single value and is not a statistic of a {of}"
+        ))
     }
 
     /// A name with a meaning in a group: a statistic, `n`, an estimate.
@@ -228,11 +226,8 @@ impl Checker<'_> {
             && self.is_signal(signal)
         {
             let name = reducer_name(reducer);
-            let says = format!(
-                "`{name} of {signal}` needs the records of a section, which are not available here"
-            );
             let help = "here only section data can be used: `mean of radius`";
-            return self.refuse(error("no-records", says, span).help(help));
+            return self.refuse(problem!("no-records", span, "`{name} of {signal}` needs the records of a section, which are not available here").help(help));
         }
         let by = match (by, found) {
             (None, _) => None,
@@ -258,8 +253,10 @@ impl Checker<'_> {
             (_, Some(statistic)) => return Some(DataReducer::Statistic(statistic, self.ddof)),
         }
         let known = STATISTICS.iter().map(|entry| entry.name).chain(["total"]);
-        let says = format!("`{name} of` cannot be computed over {from}");
-        self.refuse(error("unknown-statistic", says, reducer).suggest(&name, known))
+        self.refuse(
+            problem!("unknown-statistic", reducer, "`{name} of` cannot be computed over {from}")
+                .suggest(&name, known),
+        )
     }
 
     /// The quantity `NAME` in `p80 of NAME`, as its index and the index of its block. Only where
@@ -301,9 +298,11 @@ impl Checker<'_> {
     /// In a condition on one value, `p80 of ...` must name another quantity.
     pub fn no_such_quantity(&mut self, of: &Phrase, span: &Span) -> Option<Expr> {
         let name = of.words();
-        let says = format!("`{name}` is not a quantity that can be used here");
         let quantities = self.blocks_of("quantity").map(Block::name_text);
-        self.refuse(error("no-such-quantity", says, span).suggest(&name, quantities))
+        self.refuse(
+            problem!("no-such-quantity", span, "`{name}` is not a quantity that can be used here")
+                .suggest(&name, quantities),
+        )
     }
 
     /// A statistic of all rows of another quantity: `p80 of misfit_of_repeats`. Estimates of the
@@ -318,11 +317,15 @@ impl Checker<'_> {
         let (quantity, block) = self.other_quantity(of, scope)?;
         let name = reducer_name(reducer);
         if self.names.estimates.contains_key(&name) {
-            let says = format!(
-                "`{name}` is an estimate and can only be applied to the values of this quantity"
-            );
             let help = "use a statistic of the other quantity: `p80 of ...`, `mean of ...`";
-            return self.refuse(error("unknown-statistic", says, reducer).help(help));
+            return self.refuse(
+                problem!(
+                    "unknown-statistic",
+                    reducer,
+                    "`{name}` is an estimate and can only be applied to the values of this quantity"
+                )
+                .help(help),
+            );
         }
         let statistic = self.statistic(&reducer.with(name))?;
         let statistic = self.not_each(statistic, "quantity", span)?;

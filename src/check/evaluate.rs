@@ -1,7 +1,7 @@
 //! Evaluates a checked expression, given the values of its names.
 
-use super::plan::{Expr, Kind, Operator, Scalar};
 use super::possible::possible;
+use super::prelude::*;
 use super::values::{Values, leaf};
 use crate::result::Reason;
 

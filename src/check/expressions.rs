@@ -3,17 +3,10 @@
 
 use super::evaluate::{evaluate, number};
 use super::functions::{function, is_signal_function};
-use super::names::normalised;
-use super::plan::{Expr, Kind, Operator, Origin, Scalar, Type};
-use super::scope::Scope;
+use super::prelude::*;
 use super::values::Nothing;
-use super::{Checker, all};
 use crate::catalog::{FUNCTIONS, Function, MetricEntry, Reducer, SIGNAL_FUNCTIONS, Signature};
-use crate::problem::{Problem, error};
-use crate::source::Span;
-use crate::syntax::document::Text;
-use crate::syntax::phrase::{At, Node, Number, Phrase};
-use crate::units::Dimension;
+use crate::syntax::phrase::Number;
 
 impl Type {
     /// A number, or a number for each sample, of another dimension.
@@ -57,8 +50,12 @@ impl Checker<'_> {
                 return Some(number);
             }
             Node::Number(Number { value, .. }) if !value.is_finite() => {
-                let says = format!("`{}` is too large for a number", span.words);
-                return self.refuse(error("not-finite", says, &span));
+                return self.refuse(problem!(
+                    "not-finite",
+                    &span,
+                    "`{}` is too large for a number",
+                    span.words
+                ));
             }
             Node::Number(number) => {
                 (Kind::Constant(Scalar::Number(number.value)), Type::Number(number.dimension()))
@@ -72,11 +69,13 @@ impl Checker<'_> {
             Node::Path(path) if scope.samples => return self.samples_named(path, &span, scope),
             Node::Path(path) => return self.path(path, &span, scope),
             Node::Quoted(name) => {
-                let says =
-                    format!("`\"{name}\"` is a name, which only a word can be compared with");
                 return self.refuse(
-                    error("not-a-number", says, &span)
-                        .help("for instance: `campaign is \"series 2\"`"),
+                    problem!(
+                        "not-a-number",
+                        &span,
+                        "`\"{name}\"` is a name, which only a word can be compared with"
+                    )
+                    .help("for instance: `campaign is \"series 2\"`"),
                 );
             }
             Node::Negative(inner) => {
@@ -192,9 +191,8 @@ impl Checker<'_> {
     }
 
     fn not_a_number(&mut self, signal: &str, span: &Span) -> Option<Expr> {
-        let says = format!("expected a number, `{signal}` is a signal");
         self.refuse(
-            error("signal-not-number", says, span)
+            problem!("signal-not-number", span, "expected a number, `{signal}` is a signal")
                 .help("take a number from it: `mean of ...`, `range of ...`"),
         )
     }
@@ -315,8 +313,12 @@ impl Checker<'_> {
         if let Type::Number(dimension) | Type::Samples { dimension, .. } = expr.ty {
             return Some(dimension);
         }
-        let says = format!("expected a number, this is {}", expr.ty.in_words());
-        self.refuse(error("not-a-number", says, expr))
+        self.refuse(problem!(
+            "not-a-number",
+            expr,
+            "expected a number, this is {}",
+            expr.ty.in_words()
+        ))
     }
 
     /// Whether it is a condition; a problem if not.
@@ -324,16 +326,20 @@ impl Checker<'_> {
         if expr.ty == Type::Flag {
             return Some(());
         }
-        let says = format!("expected a condition, this is {}", expr.ty.in_words());
         self.refuse(
-            error("not-a-condition", says, expr).help("compare it: `... is ...`, `... <= ...`"),
+            problem!(
+                "not-a-condition",
+                expr,
+                "expected a condition, this is {}",
+                expr.ty.in_words()
+            )
+            .help("compare it: `... is ...`, `... <= ...`"),
         )
     }
 
     fn function(&mut self, name: &At<String>, count: usize) -> Option<&'static Function> {
         let Some(found) = function(&name.node) else {
-            let problem =
-                error("unknown-function", format!("`{}` is not a function", name.node), name);
+            let problem = problem!("unknown-function", name, "`{}` is not a function", name.node);
             return self.refuse(if MetricEntry::called(&name.node).is_some() {
                 problem.help("it is a metric, which compares two signals: use it in the `metric` of a quantity")
             } else if is_signal_function(&name.node) {
@@ -344,11 +350,12 @@ impl Checker<'_> {
         };
         let needed = if found.signature == Signature::PairSame { 2 } else { 1 };
         if count != needed {
-            let says = format!(
+            return self.refuse(problem!(
+                "arguments",
+                name,
                 "wrong number of arguments of `{}`: expected {needed}, found {count}",
                 found.name
-            );
-            return self.refuse(error("arguments", says, name));
+            ));
         }
         Some(found)
     }
@@ -389,7 +396,7 @@ impl Checker<'_> {
 /// Two operands of different types or dimensions; the problem points at both.
 pub fn unlike(done: &str, left: &Expr, right: &Expr) -> Problem {
     let (a, b) = (left.ty.in_words(), right.ty.in_words());
-    error("unit-mismatch", format!("{a} and {b} cannot be {done}"), &right.span)
+    problem!("unit-mismatch", &right.span, "{a} and {b} cannot be {done}")
         .label(b)
         .also(&left.span, a)
 }

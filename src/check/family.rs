@@ -4,13 +4,12 @@ use std::sync::Arc;
 
 use super::like;
 use super::overlay::overlay;
-use crate::problem::{Problem, Problems, error};
+use super::prelude::*;
 use crate::source::Source;
 use crate::syntax;
-use crate::syntax::document::{Block, Document, Field, Text};
-use crate::syntax::families::{self, Known};
+use crate::syntax::families::Known;
 use crate::syntax::phrase::Limit;
-use crate::syntax::{from_pest, keys};
+use crate::syntax::{families, keys};
 
 /// Written in `remove` in place of a name: all blocks of the kind.
 const EVERY: &str = "every";
@@ -41,10 +40,10 @@ pub fn read(source: &Arc<Source>, find: Find<'_>, problems: &mut Problems) -> Fa
     while let Some(field) = chain.last().and_then(|document| extends(document).cloned()) {
         let name = field.value.text.trim().trim_matches('"').to_string();
         if chain.len() > DEEPEST {
-            problems.push(error(
+            problems.push(problem!(
                 "extends-too-deep",
-                format!("more than {DEEPEST} protocols extend each other"),
                 &field,
+                "more than {DEEPEST} protocols extend each other"
             ));
             whole = false;
             break;
@@ -85,12 +84,7 @@ pub fn read(source: &Arc<Source>, find: Find<'_>, problems: &mut Problems) -> Fa
             parent = Some(before);
         }
     }
-    let mut merged = merged.unwrap_or_else(|| Document {
-        source: Arc::clone(source),
-        leading: Vec::new(),
-        blocks: Vec::new(),
-        trailing: Vec::new(),
-    });
+    let mut merged = merged.unwrap_or_else(|| Document::empty(source));
     like::write_out(&mut merged, whole, problems);
     if let Some(parent) = &mut parent {
         // What is wrong in it was told above.
@@ -151,12 +145,7 @@ fn merge(parent: Document, variant: &Document) -> Document {
             Some(old) => overlay(old, block),
         }
     }
-    Document {
-        source: Arc::clone(&variant.source),
-        leading: Vec::new(),
-        blocks,
-        trailing: Vec::new(),
-    }
+    Document { blocks, ..Document::empty(&variant.source) }
 }
 
 /// The protocol block of the variant. Axis, time, edition and source are inherited unless the
@@ -228,12 +217,8 @@ fn remove(blocks: &mut Vec<Block>, field: &Field, families: &[Known], problems: 
         ),
         _ => {
             problems.push(
-                error(
-                    "remove",
-                    format!("`remove` needs the name of one {}", field.key.text),
-                    field,
-                )
-                .help("write one name on each line, or `every` for all"),
+                problem!("remove", field, "`remove` needs the name of one {}", field.key.text)
+                    .help("write one name on each line, or `every` for all"),
             );
         }
     }

@@ -1,18 +1,8 @@
 //! Checks how sections are found in the runs of a campaign: data, conditions, length; and how many
 //! of them are kept.
 
-use super::names::normalised;
-use super::plan::{
-    Datum, DatumKind, Expr, Find, FindCondition, FoundDatum, Input, Keep, Kind, OfSignals,
-    SectionRules, Taken, Type,
-};
+use super::prelude::*;
 use super::quantities::{MOST_COUNTED, is_whole};
-use super::scope::Scope;
-use super::{Checker, all, if_written};
-use crate::problem::{error, warning};
-use crate::source::{Located, Span};
-use crate::syntax::document::{Block, Field, Text};
-use crate::units::Dimension;
 
 /// What `use` says of sections that are looked for in runs.
 pub const FOUND_SECTIONS: &str = "found sections";
@@ -36,7 +26,7 @@ impl Checker<'_> {
             .filter(|field| normalised(&field.value.text) == FOUND_SECTIONS);
         let Some(used) = used else {
             if let Some(first) = conditions.first() {
-                self.problems.push(
+                self.tell(
                     warning("find-unused", "the protocol has conditions on found sections, and does not look for sections", first).help(format!("write in the block `sections`: `use {FOUND_SECTIONS}`")),
                 );
             }
@@ -53,16 +43,23 @@ impl Checker<'_> {
         };
         let length = block.field("length").map(|field| self.found_length(field));
         if length.is_none() && (rules.zone.is_none() || zones == 0) {
-            self.problems.push(
+            self.tell(
                 error("missing-field", "a found section has no length: there is no field `length`, and no zone with a minimum length", used)
                     .help("add `length 100 m`"),
             );
         }
         if length.is_none() && rules.zone.is_some() {
             for zone in of("zone").filter(|block| block.field("minimum length").is_none()) {
-                let says = format!("a found section of zone {} has no length", zone.name_text());
                 let help = "give the zone a `minimum length`, or `sections` a `length`";
-                self.problems.push(error("missing-field", says, zone).help(help));
+                self.tell(
+                    problem!(
+                        "missing-field",
+                        zone,
+                        "a found section of zone {} has no length",
+                        zone.name_text()
+                    )
+                    .help(help),
+                );
             }
         }
         let prefer = block
@@ -94,11 +91,18 @@ impl Checker<'_> {
         if found == axis {
             return Some(expr);
         }
-        let says =
-            format!("the length of a section is {}, this is {}", axis.in_words(), found.in_words());
-        let axis = self.axis.as_ref().filter(|_| found == Dimension::ONE);
-        let help = axis.map(|axis| format!("write its unit, such as {}", axis.unit));
-        self.refuse(error("unit-mismatch", says, field).help_if(help))
+        let unit = self.axis.as_ref().filter(|_| found == Dimension::ONE).map(|axis| &axis.unit);
+        let help = unit.map(|unit| format!("write its unit, such as {unit}"));
+        self.refuse(
+            problem!(
+                "unit-mismatch",
+                field,
+                "the length of a section is {}, this is {}",
+                axis.in_words(),
+                found.in_words()
+            )
+            .help_if(help),
+        )
     }
 
     fn find_condition(&mut self, block: &Block) -> Option<FindCondition> {
@@ -154,7 +158,7 @@ impl Checker<'_> {
             let named = columns.iter().position(|datum| datum.name == block.name_text());
             let Some(column) = named else { continue };
             if rules.zone == Some(column) {
-                self.problems.push(
+                self.tell(
                     error("found-zone", "the zone of a found section follows from the conditions `where` of the zones", &field.key).help("remove the line"),
                 );
                 sound = false;
@@ -189,11 +193,13 @@ impl Checker<'_> {
             _ => false,
         };
         if !fits {
-            self.problems.push(
-                error(
+            self.tell(
+                problem!(
                     "unit-mismatch",
-                    format!("`{}` is {wanted}, this is {}", datum.name, expr.ty.in_words()),
                     field,
+                    "`{}` is {wanted}, this is {}",
+                    datum.name,
+                    expr.ty.in_words()
                 )
                 .also(&datum.span, "declared here"),
             );
@@ -216,10 +222,17 @@ impl Checker<'_> {
                     .iter()
                     .map(|datum| format!("`{}`", self.names.columns[datum.column].name))
                     .collect();
-                let says = format!("section data need each other: {}", names.join(", "));
                 let span = left[0].of.expr.span.span.clone();
                 let help = "let one of them follow from signals only: `mean of ...`";
-                return self.refuse(error("found-loop", says, &span).help(help));
+                return self.refuse(
+                    problem!(
+                        "found-loop",
+                        &span,
+                        "section data need each other: {}",
+                        names.join(", ")
+                    )
+                    .help(help),
+                );
             };
             ordered.push(left.remove(at));
         }
@@ -285,8 +298,11 @@ impl Checker<'_> {
             let at = part(name).span;
             let index = self.column_called("datum", name, &at)?;
             if matches!(self.names.columns[index].kind, DatumKind::Number(_)) {
-                let says = format!("`{name}` is a number; only a column of words can form groups");
-                return self.refuse(error("not-a-word", says, &at));
+                return self.refuse(problem!(
+                    "not-a-word",
+                    &at,
+                    "`{name}` is a number; only a column of words can form groups"
+                ));
             }
             each.push(index);
         }

@@ -4,11 +4,8 @@ use std::collections::BTreeSet;
 
 use super::Overrides;
 use super::names::Names;
-use super::plan::{Plan, Quantity};
+use super::prelude::*;
 use crate::catalog::{Reducer, Statistic};
-use crate::problem::{Problem, Problems};
-use crate::source::Span;
-use crate::syntax::document::Block;
 
 /// Better help where the unknown unit after a number is a name, which the parser does not know: `3
 /// std`.

@@ -1,12 +1,9 @@
 //! Checks which rows a limit, a minimum or a report is of, and by what keys they form groups.
 
-use super::plan::{DatumKind, Key, Kind, Scope};
+use super::plan::Scope;
+use super::prelude::*;
 use super::scope::Scope as Names;
-use super::{Checker, if_written};
-use crate::problem::error;
-use crate::source::Located;
-use crate::syntax::document::Block;
-use crate::syntax::phrase::{At, Scope as Written};
+use crate::syntax::phrase::Scope as Written;
 
 /// Keys of groups that every campaign has.
 const KEYS: [&str; 5] = ["zone", "section", "site", "record", super::resolve::CAMPAIGN];
@@ -60,7 +57,7 @@ impl Checker<'_> {
             if is_zone(key) {
                 ok &= !each_zone || self.key_twice(&key.node, key);
                 if self.zone_names.is_empty() {
-                    self.problems.push(error("unknown-zone", "the protocol has no zones", key));
+                    self.tell(error("unknown-zone", "the protocol has no zones", key));
                     ok = false;
                 }
                 each_zone = true;
@@ -88,8 +85,9 @@ impl Checker<'_> {
                     known if known.is_empty() => "the protocol has no zones".into(),
                     known => format!("known zones: {known}"),
                 };
-                let says = format!("there is no zone {}", zone.node);
-                self.problems.push(error("unknown-zone", says, zone).help(help));
+                self.tell(
+                    problem!("unknown-zone", zone, "there is no zone {}", zone.node).help(help),
+                );
                 ok = false;
             } else if found.contains(&zone.node) {
                 ok = self.key_twice(&format!("zone {}", zone.node), zone);
@@ -101,8 +99,7 @@ impl Checker<'_> {
     }
 
     fn key_twice(&mut self, key: &str, at: &impl Located) -> bool {
-        let says = format!("`{key}` is named twice in the scope");
-        self.problems.push(error("duplicate-name", says, at));
+        self.tell(problem!("duplicate-name", at, "`{key}` is named twice in the scope"));
         false
     }
 
@@ -126,10 +123,16 @@ impl Checker<'_> {
         }
         if let Some(index) = self.campaign_column(name, &key.place()) {
             if matches!(self.names.columns[index].kind, DatumKind::Number(_)) {
-                let says = format!("`{name}` is a number; only a column of words can form groups");
                 let help =
                     "declare the column with `one of ...`, or use it in an estimate: `mean of ...`";
-                return self.refuse(error("not-a-word", says, key).help(help));
+                return self.refuse(
+                    problem!(
+                        "not-a-word",
+                        key,
+                        "`{name}` is a number; only a column of words can form groups"
+                    )
+                    .help(help),
+                );
             }
             return Some(Key::Column(index));
         }
@@ -138,8 +141,10 @@ impl Checker<'_> {
         let columns = words.map(|datum| datum.name.as_str()).filter(|name| !KEYS.contains(name));
         let of_all = KEYS.into_iter().filter(|key| places.is_some() || *key != "record");
         let known = of_all.chain(places.iter().flatten().map(String::as_str)).chain(columns);
-        let says = format!("{what} cannot be grouped by `{name}`");
-        self.refuse(error("unknown-key", says, key).suggest(name, known))
+        self.refuse(
+            problem!("unknown-key", key, "{what} cannot be grouped by `{name}`")
+                .suggest(name, known),
+        )
     }
 
     /// A key inside an estimate: there the zone is one like others.

@@ -1,17 +1,11 @@
 //! Limits that are not what they seem: they hold, or fail, whatever the values are.
 
-use super::Checker;
 use super::evaluate::{number, words};
-use super::plan::{
-    Estimate, EstimateKind, Expr, InputSide, Kind, OfGroup, Operator, Scalar, Side, Taking, Valued,
-};
+use super::prelude::*;
 use super::values::Values;
 use crate::catalog::Statistic;
 use crate::metrics::rounded;
-use crate::problem::{Problem, error, warning};
 use crate::result::Reason;
-use crate::source::{Located, Span};
-use crate::syntax::document::Block;
 
 /// Statistics that are never negative, beside those of scatter.
 const OF_MAGNITUDES: [&str; 2] = ["rms", "peak"];
@@ -51,11 +45,8 @@ impl Checker<'_> {
             return Some(());
         };
         let name = if side == InputSide::Measured { "measured" } else { "simulated" };
-        let says = format!(
-            "this value is taken from the {name} record for both sides, so that the two are always equal"
-        );
         let help = format!("write the value without `{name}(...)`: it is taken from each record");
-        self.refuse(error("value-of-one-record", says, at).help(help))
+        self.refuse(problem!("value-of-one-record", at, "this value is taken from the {name} record for both sides, so that the two are always equal").help(help))
     }
 
     /// A share is at most 1: a limit above it always holds, and with `at least` never. Usually `%`
@@ -65,9 +56,11 @@ impl Checker<'_> {
         if value <= 1.0 || !is_share(estimate) {
             return Some(());
         }
-        let says = format!("a share is at most 1; `{}` is above it", words(bound));
         let help = (value <= 100.0).then(|| format!("write `{} %`", rounded(value)));
-        self.refuse(error("out-of-range", says, bound).help_if(help))
+        self.refuse(
+            problem!("out-of-range", bound, "a share is at most 1; `{}` is above it", words(bound))
+                .help_if(help),
+        )
     }
 
     /// The estimate of a whole quantity with a bound from the same values: the two grow together.
@@ -82,7 +75,7 @@ impl Checker<'_> {
             block.name_text()
         );
         let help = "it says nothing about their size; name another quantity, or write a number";
-        self.problems.push(warning("own-values", says, &bound.expr.span).help(help));
+        self.tell(warning("own-values", says, &bound.expr.span).help(help));
     }
 
     /// `mean + 3 * std` of differences: its magnitude is small where the mean is negative, so a bad
@@ -114,7 +107,7 @@ impl Checker<'_> {
                 problem.code == "signed-estimate" && problem.at.as_ref() == Some(&at.place())
             };
             if !self.problems.0.iter().any(told) {
-                self.problems.push(warning("signed-estimate", says, at).help(help));
+                self.tell(warning("signed-estimate", says, at).help(help));
             }
         }
     }

@@ -1,14 +1,10 @@
 //! Checks ends of confidence intervals, and regressions over the data of sections.
 
 use super::estimates::{bare, reducer_name};
-use super::plan::{Estimate, EstimateKind, Expr, Fit, Origin, Taking};
-use super::scope::Scope;
-use super::{Checker, all};
+use super::prelude::*;
 use crate::catalog::Statistic;
 use crate::metrics::rounded;
-use crate::problem::error;
-use crate::source::Located;
-use crate::syntax::phrase::{Fit as WrittenFit, Node, Phrase};
+use crate::syntax::phrase::Fit as WrittenFit;
 
 /// Largest number of regressors. With more, the number of sections of usual tests is too small for
 /// a regression.
@@ -94,20 +90,25 @@ impl Checker<'_> {
     ) -> Option<Expr> {
         let Some(dimension) = scope.values() else { return self.no_values(span) };
         if written.over.len() > MOST_REGRESSORS {
-            let says = format!(
+            return self.refuse(problem!(
+                "too-large",
+                span,
                 "{} regressors; there can be at most {MOST_REGRESSORS}",
                 written.over.len()
-            );
-            return self.refuse(error("too-large", says, span));
+            ));
         }
         if written.over.len() != written.at.len() {
-            let says = format!(
-                "a regression over {} regressors needs as many values after `at`; there are {}",
-                written.over.len(),
-                written.at.len()
-            );
             let help = "write for instance `prediction over a, b at 1, 2`";
-            return self.refuse(error("arguments", says, span).help(help));
+            return self.refuse(
+                problem!(
+                    "arguments",
+                    span,
+                    "a regression over {} regressors needs as many values after `at`; there are {}",
+                    written.over.len(),
+                    written.at.len()
+                )
+                .help(help),
+            );
         }
         if let Some(share) = &written.confidence {
             self.confidence(share.node, share)?;
@@ -126,12 +127,16 @@ impl Checker<'_> {
             if of == read {
                 return Some((regressor, target));
             }
-            let says = format!(
-                "the regressor is {}, the value after `at` is {}",
-                of.in_words(),
-                read.in_words()
-            );
-            self.refuse(error("unit-mismatch", says, &target.expr).also(&regressor, of.in_words()))
+            self.refuse(
+                problem!(
+                    "unit-mismatch",
+                    &target.expr,
+                    "the regressor is {}, the value after `at` is {}",
+                    of.in_words(),
+                    read.in_words()
+                )
+                .also(&regressor, of.in_words()),
+            )
         }))?;
         let (over, at) = pairs.into_iter().unzip();
         let fit = Fit {

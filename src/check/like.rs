@@ -1,8 +1,7 @@
 //! A quantity that is like another: its fields are those of the other, with its own over them.
 
 use super::overlay::overlay;
-use crate::problem::{Problems, error};
-use crate::syntax::document::{Block, Document};
+use super::prelude::*;
 
 const LIKE: &str = "like";
 
@@ -46,7 +45,7 @@ fn filled(
                 .map(|(_, block)| block.name_text())
                 .filter(|known| *known != own.name_text());
             problems.push(
-                error("no-such-quantity", format!("no quantity is called `{name}`"), field)
+                problem!("no-such-quantity", field, "no quantity is called `{name}`")
                     .suggest(name, known),
             );
         }
@@ -56,12 +55,8 @@ fn filled(
         // One problem for each of a round, where its own `like` stands.
         if passed[0] == other {
             problems.push(
-                error(
-                    "like-loop",
-                    format!("`{}` is like itself in the end", own.name_text()),
-                    field,
-                )
-                .help("let one of them state its own `of`, `value` and limits"),
+                problem!("like-loop", field, "`{}` is like itself in the end", own.name_text())
+                    .help("let one of them state its own `of`, `value` and limits"),
             );
         }
         return None;

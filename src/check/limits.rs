@@ -2,23 +2,15 @@
 
 use super::evaluate::{number, words};
 use super::groups::Grouped;
-use super::names::normalised;
-use super::plan::{
-    Estimate, EstimateKind, Expr, Kind, Limit, OfGroup, Scalar, Scope as LimitScope, Type,
-};
+use super::{overlap, printed};
+use super::plan::Scope as LimitScope;
+use super::prelude::*;
 use super::resolve::LIMITS_NOT_VALUES;
-use super::scope::Scope;
 use super::values::Values;
-use super::{Checker, all, if_written, overlap, printed};
 use crate::catalog::Best;
 use crate::metrics::rounded;
-use crate::problem::{Problems, error};
 use crate::result::Reason;
-use crate::source::Span;
-use crate::syntax::document::{Block, Field, Text};
-use crate::syntax::from_pest;
 use crate::syntax::phrase::Limit as Written;
-use crate::units::{Dimension, Unit};
 
 /// What all limits of a quantity have in common.
 struct Common<'a> {
@@ -203,23 +195,31 @@ impl Checker<'_> {
             } else {
                 "this estimate is".into()
             };
-            let says = format!("{what} {wanted}, this limit is {}", found.in_words());
             let help = if unit.text == "-" {
                 "write the limit without unit".into()
             } else {
                 format!("write the limit in {unit}")
             };
             return self.refuse(
-                error("unit-mismatch", says, &bound)
-                    .label(found.in_words())
-                    .also(from, wanted)
-                    .help(help),
+                problem!(
+                    "unit-mismatch",
+                    &bound,
+                    "{what} {wanted}, this limit is {}",
+                    found.in_words()
+                )
+                .label(found.in_words())
+                .also(from, wanted)
+                .help(help),
             );
         }
         match bound.kind {
             Kind::Constant(Scalar::Number(value)) if value <= 0.0 && !at_least => {
-                let says = format!("a limit must be above zero; `{}` is not", words(&bound));
-                self.refuse(error("out-of-range", says, &bound))
+                self.refuse(problem!(
+                    "out-of-range",
+                    &bound,
+                    "a limit must be above zero; `{}` is not",
+                    words(&bound)
+                ))
             }
             _ => Some(bound),
         }
@@ -261,10 +261,10 @@ impl Checker<'_> {
         } else {
             format!("the values of `{}`", common.block.name_text())
         };
-        let problem = error(
+        let problem = problem!(
             "wrong-side",
-            format!("this limit is on the wrong side: for {of}, the best value is {is}"),
             &written.statistic.to(&written.bound, ()),
+            "this limit is on the wrong side: for {of}, the best value is {is}"
         );
         let problem = problem.also_if(from, format!("best value {is}"));
         self.refuse(problem.help(match (best, written.at_least) {
@@ -290,8 +290,12 @@ impl Checker<'_> {
         if dimension == Dimension::ONE {
             return Some(factor);
         }
-        let says = format!("a factor must be a plain number, this is {}", factor.ty.in_words());
-        self.refuse(error("unit-mismatch", says, &factor))
+        self.refuse(problem!(
+            "unit-mismatch",
+            &factor,
+            "a factor must be a plain number, this is {}",
+            factor.ty.in_words()
+        ))
     }
 
     /// A limit that refers to other limits and is a constant must be above zero.
@@ -305,13 +309,18 @@ impl Checker<'_> {
                 || value.to_string(),
                 |unit| format!("{}{}", rounded(unit.from_si(value)), unit.suffix()),
             );
-            let says =
-                format!("a limit must be above zero; `{}` is {shown}", words(&limit.bound.expr));
             let help = format!(
                 "in a limit, `{name}` stands for the limit of the {name}, not for its value"
             );
-            self.problems.push(
-                error("out-of-range", says, &limit.bound.expr).also(place, "a limit").help(help),
+            self.tell(
+                problem!(
+                    "out-of-range",
+                    &limit.bound.expr,
+                    "a limit must be above zero; `{}` is {shown}",
+                    words(&limit.bound.expr)
+                )
+                .also(place, "a limit")
+                .help(help),
             );
         }
     }
@@ -328,12 +337,18 @@ impl Checker<'_> {
         for limit in limits {
             for (name, span) in refers(limit) {
                 if target(limit, &name).is_none() {
-                    let says = format!("no limit of `{name}` applies to the same sections");
                     let other = limits.iter().find(|other| other.estimate.name == name);
-                    self.problems.push(error("no-such-limit", says, &span).also_if(
-                        other.map(|other| &other.span),
-                        "this one applies to other sections",
-                    ));
+                    self.tell(
+                        problem!(
+                            "no-such-limit",
+                            &span,
+                            "no limit of `{name}` applies to the same sections"
+                        )
+                        .also_if(
+                            other.map(|other| &other.span),
+                            "this one applies to other sections",
+                        ),
+                    );
                 }
             }
         }
@@ -354,7 +369,7 @@ impl Checker<'_> {
             }
             told.extend(others);
             told.push(&limit.span);
-            self.problems.push(problem.help(LIMITS_NOT_VALUES));
+            self.tell(problem.help(LIMITS_NOT_VALUES));
         }
     }
 }

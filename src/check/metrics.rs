@@ -5,23 +5,14 @@ use std::collections::BTreeSet;
 
 use super::compared::Compared;
 use super::expressions::whole;
-use super::names::{Assignment, bare_word, normalised};
-use super::plan::{
-    Axis, AxisOperation, Evaluation, Expr, Input, InputSide, Kind, Origin, Pairing, Position, Side,
-    Step, Taken,
-};
+use super::names::{Assignment, bare_word};
+use super::prelude::*;
 use super::quantities::is_whole;
-use super::scope::{Reduce, Scope};
+use super::scope::Reduce;
 use super::steps::{after, show_number};
 use super::wordings::{fits, item_phrase};
-use super::{Checker, if_written};
 use crate::catalog::{Asked, Form, METRICS, Metric, MetricEntry, Part, Reducer};
-use crate::problem::{Problems, error};
-use crate::source::Span;
-use crate::syntax::document::{Field, Text};
-use crate::syntax::from_pest;
-use crate::syntax::phrase::{At, Item, Node, Phrase, Step as WrittenStep};
-use crate::units::Dimension;
+use crate::syntax::phrase::{Item, Step as WrittenStep};
 
 /// Smallest number of points of a distribution: one point has no scatter.
 const LEAST_POINTS: f64 = 2.0;
@@ -163,13 +154,19 @@ impl Checker<'_> {
         for input in inputs {
             if let (Taken::Reduced(reducer), InputSide::Own) = (input.taken, input.side) {
                 let words = normalised(input.span.text());
-                let says = format!("`{words}` does not say which side it is computed from");
                 let help = if reducer.in_words() == words {
                     format!("write `{words} of measured` or `{words} of simulated`")
                 } else {
                     format!("write `measured({words})` or `simulated({words})`")
                 };
-                return self.refuse(error("side", says, &input.span).help(help));
+                return self.refuse(
+                    problem!(
+                        "side",
+                        &input.span,
+                        "`{words}` does not say which side it is computed from"
+                    )
+                    .help(help),
+                );
             }
             self.samples_are_kept(input.taken, chain, &input.span)?;
         }
@@ -243,10 +240,7 @@ impl Checker<'_> {
         let points = filled.options.first().copied().flatten().map(|(points, _)| points);
         if let Some(points) = points.filter(|points| !is_whole(*points, LEAST_POINTS..=MOST_POINTS))
         {
-            let says = format!(
-                "the number of points must be a whole number from {LEAST_POINTS} to {MOST_POINTS}, this is {points}"
-            );
-            return self.refuse(error("out-of-range", says, span));
+            return self.refuse(problem!("out-of-range", span, "the number of points must be a whole number from {LEAST_POINTS} to {MOST_POINTS}, this is {points}"));
         }
         let mut asked = Asked { points: points.map(|points| points as usize), band: None };
         if let [(low, of_low, at_low), (high, of_high, at_high)] = filled.numbers.as_slice() {
@@ -263,10 +257,10 @@ impl Checker<'_> {
             }
             if low >= high {
                 let (low, high) = (show_number(*low, wanted), show_number(*high, wanted));
-                return self.refuse(error(
+                return self.refuse(problem!(
                     "out-of-range",
-                    format!("the band from {low} to {high} is empty"),
                     at_high,
+                    "the band from {low} to {high} is empty"
                 ));
             }
             asked.band = Some((*low, *high));
@@ -309,15 +303,13 @@ impl Checker<'_> {
             .map(|(option, value)| vec![item(value), word(option.name)]);
         let parts = head.map(|head| std::iter::once(head).chain(options).collect::<Vec<_>>());
         let (Some(parts), None) = (parts, rest.next()) else {
-            return self.refuse(error(
+            return self.refuse(problem!(
                 "arguments",
-                format!(
-                    "`{}` is written `{}`; number of arguments: {}",
-                    name.node,
-                    entry.call_in_words(),
-                    given.len()
-                ),
                 name,
+                "`{}` is written `{}`; number of arguments: {}",
+                name.node,
+                entry.call_in_words(),
+                given.len()
             ));
         };
         let (metric, over) = self.metric_filled(entry, &WrittenStep { parts, when: None }, span)?;
@@ -334,7 +326,7 @@ impl Checker<'_> {
     ) -> Option<Expr> {
         if entry.form.head.iter().any(|part| !matches!(part, Part::Word(_))) {
             return self.refuse(
-                error("arguments", format!("`{}` needs arguments", entry.function_name()), span)
+                problem!("arguments", span, "`{}` needs arguments", entry.function_name())
                     .help(format!("write `{}`", entry.call_in_words())),
             );
         }
@@ -353,7 +345,7 @@ impl Checker<'_> {
         };
         if side != InputSide::Own {
             return self.refuse(
-                error("side", format!("`{}` takes both sides", span.words), span)
+                problem!("side", span, "`{}` takes both sides", span.words)
                     .help("leave `measured(...)` or `simulated(...)` out"),
             );
         }
@@ -394,9 +386,15 @@ impl Checker<'_> {
     ) -> Option<Expr> {
         let name = reducer.in_words();
         if name != "slope" {
-            let says = format!("`{name}` cannot be computed over another signal; only a slope can");
             let help = "write `slope over SIGNAL`";
-            return self.refuse(error("unknown-reducer", says, place).help(help));
+            return self.refuse(
+                problem!(
+                    "unknown-reducer",
+                    place,
+                    "`{name}` cannot be computed over another signal; only a slope can"
+                )
+                .help(help),
+            );
         }
         self.signal(over, at)
     }
@@ -437,7 +435,7 @@ impl Checker<'_> {
         let Reduce { own, axis, metrics, side } = scope.reduce?;
         if metrics && side != InputSide::Own {
             return self.refuse(
-                error("side", format!("`{}` names its sides already", span.words), span)
+                problem!("side", span, "`{}` names its sides already", span.words)
                     .help("remove the outer `measured(...)` or `simulated(...)`"),
             );
         }

@@ -1,11 +1,7 @@
 //! Checks how many pairs quantities need: in all, and in each group.
 
-use super::Checker;
 use super::groups::Grouped;
-use super::plan::MinimumOfGroups;
-use crate::problem::{Problems, error};
-use crate::syntax::document::{Block, Field};
-use crate::syntax::from_pest;
+use super::prelude::*;
 use crate::syntax::phrase::Scope;
 
 /// The fields `minimum pairs` of a block.
@@ -29,7 +25,7 @@ impl Checker<'_> {
             };
             let groups = written.scope.clone();
             if let Some((_, first)) = seen.iter().find(|(known, _)| *known == groups) {
-                self.problems.push(
+                self.tell(
                     error(
                         "duplicate-field",
                         "there are two `minimum pairs` for the same values",

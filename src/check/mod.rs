@@ -34,6 +34,7 @@ pub mod plan;
 mod plausibility;
 mod positions;
 pub mod possible;
+mod prelude;
 mod printed;
 mod quantities;
 mod records;
@@ -50,13 +51,13 @@ mod verdicts;
 mod weights;
 mod wordings;
 
-pub use names::normalised;
+pub use crate::syntax::phrase::normalised;
 
 use std::collections::BTreeSet;
 
 use indexmap::IndexMap;
 
-use crate::problem::{Problem, Problems, error};
+use crate::problem::{Problem, Problems, error, problem};
 use crate::source::{Span, Spanned};
 use crate::syntax::document::{Block, Document, Field, Text};
 use crate::syntax::from_pest;
@@ -207,9 +208,13 @@ pub fn check(
 }
 
 impl Checker<'_> {
-    /// Reports a problem; there is no result.
-    fn refuse<T>(&mut self, problem: Problem) -> Option<T> {
+    fn tell(&mut self, problem: Problem) {
         self.problems.push(problem);
+    }
+
+    /// Tells a problem; there is no result.
+    fn refuse<T>(&mut self, problem: Problem) -> Option<T> {
+        self.tell(problem);
         None
     }
 
@@ -295,7 +300,7 @@ impl Checker<'_> {
             {
                 problem = problem.also(block, "begins here");
             }
-            self.problems.push(problem);
+            self.tell(problem);
             self.looped.extend(self.open[from..].iter().cloned());
             return None;
         }
@@ -355,7 +360,7 @@ impl Checker<'_> {
         let quantities: Vec<plan::Quantity> =
             of("quantity").filter_map(|block| self.quantity(block)).collect();
         if of("quantity").next().is_none() {
-            self.problems.push(error(
+            self.tell(error(
                 "no-quantity",
                 "the protocol has no quantity, so nothing would be compared",
                 head,
@@ -431,13 +436,14 @@ impl Checker<'_> {
     fn unknown_overrides(&mut self, head: &Block) {
         for (name, given) in self.overrides {
             if !self.names.parameter_blocks.contains_key(name) {
-                let problem = error(
+                let problem = problem!(
                     "unknown-parameter",
-                    format!("protocol `{}` has no parameter `{name}`", head.name_text()),
                     &given.text.span,
+                    "protocol `{}` has no parameter `{name}`",
+                    head.name_text()
                 );
                 let datum = self.names.vehicle.iter().find(|datum| datum.name == *name);
-                self.problems.push(match datum {
+                self.tell(match datum {
                     Some(datum) => problem.help(format!(
                         "this is a vehicle datum: write `{}` in the vehicle file",
                         datum.key

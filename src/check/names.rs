@@ -1,21 +1,13 @@
 //! The names of a protocol and their meanings, gathered first, so that rules can refer to blocks
 //! further down.
 
+use indexmap::IndexMap;
 use std::collections::BTreeSet;
 
-use indexmap::IndexMap;
-
-use super::Checker;
-use super::plan::{Datum, DeclaredRecord, Scalar, SetBy, Type};
+use super::prelude::*;
 use crate::catalog::{Reducer, Statistic};
-use crate::problem::{error, warning};
-use crate::source::{Located, Span};
-use crate::syntax::document::{Block, Field, Text};
-use crate::syntax::from_pest;
-use crate::syntax::phrase::{Alias, Node, Phrase};
-
-pub use crate::syntax::phrase::normalised;
-use crate::units::{SYMBOLS, Unit};
+use crate::syntax::phrase::Alias;
+use crate::units::SYMBOLS;
 
 /// A parameter with the value that is used.
 #[derive(Clone, Debug)]
@@ -181,24 +173,28 @@ impl Checker<'_> {
             None
         };
         if let Some(what) = taken {
-            let says = format!("`{name}` is {what}, so this {kind} needs another name");
             let help = format!("for instance `{name}_1`, or a longer name");
-            self.problems.push(error("reserved-name", says, block).help(help));
+            self.tell(
+                problem!(
+                    "reserved-name",
+                    block,
+                    "`{name}` is {what}, so this {kind} needs another name"
+                )
+                .help(help),
+            );
         } else if let Some(sign) = name
             .chars()
             .find(|c| !c.is_ascii_alphanumeric() && *c != '_')
             .or_else(|| name.chars().next().filter(char::is_ascii_digit))
         {
-            self.problems.push(
-                error("bad-name", format!(
-                "a {kind} cannot be called `{name}`: in an expression, `{sign}` is not read as part of a name"
-            ), block)
+            self.tell(
+                problem!("bad-name", block, "a {kind} cannot be called `{name}`: in an expression, `{sign}` is not read as part of a name")
                     .help("use letters, digits and `_`, and begin with a letter"),
             );
         } else if let Some(unit) =
             SYMBOLS.iter().find(|unit| unit.symbol == name && kind != "filter" && kind != "place")
         {
-            self.problems.push(
+            self.tell(
                 warning("unit-name", format!("`{name}` is also a unit ({})", unit.name), block)
                     .help(format!("after a number, `{name}` is read as the unit, elsewhere as the {kind}; a longer name is clearer")),
             );
@@ -228,8 +224,8 @@ impl Checker<'_> {
             // `vehicle.speed` and `section.speed` distinguish these.
             let data = |kind: &str| matches!(kind, "vehicle" | "section");
             if a != b && !(data(a) && data(b)) {
-                self.problems.push(
-                    error("name-clash", format!("`{name}` is a {a} and a {b}"), block)
+                self.tell(
+                    problem!("name-clash", block, "`{name}` is a {a} and a {b}")
                         .also(first, format!("the {a}")),
                 );
             }
@@ -271,8 +267,8 @@ impl Checker<'_> {
             None => format!("add lines {} ...", missing.join(" ..., ")),
         };
         let name = format!("{kind} {}", block.name_text());
-        self.problems.push(
-            error("missing-field", format!("`{}` has no {list}", name.trim()), block)
+        self.tell(
+            problem!("missing-field", block, "`{}` has no {list}", name.trim())
                 .help(help.replace("` ...", " ...`")),
         );
     }
@@ -282,9 +278,11 @@ impl Checker<'_> {
         let columns = &self.names.columns;
         let found = columns.iter().position(|datum| datum.name == name);
         if found.is_none() {
-            let says = format!("no section {what} is called `{name}`");
             let known = columns.iter().map(|datum| &datum.name);
-            self.problems.push(error("unknown-name", says, at).suggest(name, known));
+            self.tell(
+                problem!("unknown-name", at, "no section {what} is called `{name}`")
+                    .suggest(name, known),
+            );
         }
         found
     }
@@ -295,12 +293,13 @@ impl Checker<'_> {
             Ok(unit) => return Some(unit),
             Err(unknown) => unknown,
         };
-        let says = format!("`{}` is not a known unit", unknown.word);
         let help = match unknown.near {
             Some(near) => format!("did you mean `{near}`?"),
             None => "units are written like kN, m/s^2, km/h, mrad, `-` for a plain number".into(),
         };
-        self.refuse(error("unknown-unit", says, text).help(help))
+        self.refuse(
+            problem!("unknown-unit", text, "`{}` is not a known unit", unknown.word).help(help),
+        )
     }
 }
 

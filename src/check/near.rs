@@ -1,14 +1,9 @@
 //! Conditions of nearness: `a near b within c` as a comparison, and the two numbers that it
 //! compares.
 
-use super::Checker;
 use super::expressions::{origin, unlike};
 use super::functions::function;
-use super::plan::{Expr, Kind, Operator, Scalar, Type};
-use super::scope::Scope;
-use crate::problem::error;
-use crate::syntax::phrase::{Node, Phrase};
-use crate::units::Dimension;
+use super::prelude::*;
 
 /// The two numbers that a condition compares: the value, and its target or bound.
 #[derive(Clone, Debug)]
@@ -46,10 +41,11 @@ impl Checker<'_> {
             } else {
                 format!("{}, or a share such as `10 %`", a.in_words())
             };
-            return self.refuse(error(
+            return self.refuse(problem!(
                 "unit-mismatch",
-                format!("expected a tolerance that is {wanted}; this is {}", c.in_words()),
                 &tolerance.span,
+                "expected a tolerance that is {wanted}; this is {}",
+                c.in_words()
             ));
         }
         let magnitude = function("magnitude")?;

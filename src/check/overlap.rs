@@ -1,9 +1,8 @@
 //! Finds two limits that apply to the same statistic of a quantity in the same section.
 
 use super::conditions::impossible;
-use super::plan::{Expr, Kind, Limit, Operator, Scalar, Scope};
-use crate::problem::{Problems, error};
-use crate::syntax::document::Block;
+use super::plan::Scope;
+use super::prelude::*;
 
 /// `zone`: the expression of the zone of a section, where there are zones.
 pub fn find(limits: &[Limit], zone: Option<&Expr>, block: &Block, problems: &mut Problems) {
@@ -32,7 +31,7 @@ pub fn find(limits: &[Limit], zone: Option<&Expr>, block: &Block, problems: &mut
             said.push(pair);
             let place = shared(&other.scope, &limit.scope);
             problems.push(
-                error("limits-overlap", format!("two limits of `{}` apply to `{}`{place}", limit.estimate.name, block.name_text()), &limit.span)
+                problem!("limits-overlap", &limit.span, "two limits of `{}` apply to `{}`{place}", limit.estimate.name, block.name_text())
                 .also(&other.span, "also applies")
                 .help(format!(
                     "give them different zones (`for zones ...`) or conditions that exclude each other (`only when ...`); one that a \

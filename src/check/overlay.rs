@@ -1,8 +1,6 @@
 //! The fields of a variant over those of its parent.
 
-use crate::problem::Problems;
-use crate::syntax::document::{Block, Field};
-use crate::syntax::from_pest;
+use super::prelude::*;
 use crate::syntax::phrase::{Limit, Scope};
 
 /// Puts fields of the variant in place of fields of the parent with the same slot; other fields

@@ -1,16 +1,10 @@
 //! Parameters: values from defaults, campaign or command line; numbers that follow from constants
 //! only.
 
+use super::Override;
 use super::evaluate::words;
-use super::names::{ParameterDef, normalised};
-use super::plan::{Kind, Scalar, SetBy, Type};
-use super::scope::Scope;
-use super::{Checker, Override, all};
-use crate::problem::error;
-use crate::syntax::document::{Block, Field, Text};
-use crate::syntax::from_pest;
-use crate::syntax::phrase::Phrase;
-use crate::units::Dimension;
+use super::names::ParameterDef;
+use super::prelude::*;
 
 impl Checker<'_> {
     /// The parameter of a name. It is checked when it is first used, as its default may use
@@ -48,11 +42,11 @@ impl Checker<'_> {
             }
             (None, Some(choices)) => {
                 if let Some(range) = block.field("range") {
-                    self.problems.push(
-                        error(
+                    self.tell(
+                        problem!(
                             "unknown-field",
-                            format!("`{name}` is a choice of words and cannot have a range"),
                             &range.key,
+                            "`{name}` is a choice of words and cannot have a range"
                         )
                         .also(&choices.key, "the choice"),
                     );
@@ -90,8 +84,10 @@ impl Checker<'_> {
             if choices.iter().any(|choice| choice == word) {
                 return Some(word);
             }
-            let says = format!("`{word}` is not one of the choices of `{name}`");
-            self.refuse(error("unknown-choice", says, text).suggest(word, &choices))
+            self.refuse(
+                problem!("unknown-choice", text, "`{word}` is not one of the choices of `{name}`")
+                    .suggest(word, &choices),
+            )
         }))?;
         Some((Scalar::Word(words.last()?.to_string()), Type::Word(choices)))
     }
@@ -107,7 +103,7 @@ impl Checker<'_> {
         let written = normalised(&place.value.text);
         let Some(place_name) = self.place_called(&written) else {
             return self.refuse(
-                error("unknown-place", format!("`{written}` is not a place"), place)
+                problem!("unknown-place", place, "`{written}` is not a place")
                     .suggest(&written, self.names.places.keys()),
             );
         };
@@ -116,11 +112,12 @@ impl Checker<'_> {
             let mut positions: Vec<String> = Vec::new();
             for word in from_pest::list(text, self.problems)? {
                 if !members.contains(&word.node) {
-                    let says = format!(
+                    let problem = problem!(
+                        "unknown-place",
+                        &word,
                         "`{}` is not a position of `{place_name}`; `{name}` selects such positions",
                         word.node
                     );
-                    let problem = error("unknown-place", says, &word);
                     return self.refuse(problem.suggest(&word.node, &members));
                 }
                 if !positions.contains(&word.node) {
@@ -152,19 +149,20 @@ impl Checker<'_> {
         let Some((text, set)) = set else { return as_default };
         let (value, found) = set?;
         if found != dimension {
-            let says = format!(
-                "parameter `{name}` is {}, the given value is {}",
-                dimension.in_words(),
-                found.in_words()
-            );
             let default_words = default.text.trim();
             let help = (found == Dimension::ONE)
                 .then(|| format!("write its unit, as its default does: `{default_words}`"));
             return self.refuse(
-                error("unit-mismatch", says, text)
-                    .label(found.in_words())
-                    .also(default, "its default")
-                    .help_if(help),
+                problem!(
+                    "unit-mismatch",
+                    text,
+                    "parameter `{name}` is {}, the given value is {}",
+                    dimension.in_words(),
+                    found.in_words()
+                )
+                .label(found.in_words())
+                .also(default, "its default")
+                .help_if(help),
             );
         }
         match block.field("range") {
@@ -189,11 +187,15 @@ impl Checker<'_> {
         };
         let inside = (ends[0]..=ends[1]).contains(&value);
         if !inside {
-            let says = format!("`{}` is outside the range of `{name}`", normalised(&source.text));
-            self.problems.push(
-                error("out-of-range", says, source)
-                    .also(range, "the range")
-                    .help(format!("allowed: {}", normalised(&range.value.text))),
+            self.tell(
+                problem!(
+                    "out-of-range",
+                    source,
+                    "`{}` is outside the range of `{name}`",
+                    normalised(&source.text)
+                )
+                .also(range, "the range")
+                .help(format!("allowed: {}", normalised(&range.value.text))),
             );
         }
         inside
@@ -212,9 +214,14 @@ impl Checker<'_> {
         for (end, phrase) in ends.iter_mut().zip([low, high]) {
             let (found, of) = self.constant_phrase(&phrase)?;
             if of != dimension {
-                let says =
-                    format!("`{name}` is {}, its range is {}", dimension.in_words(), of.in_words());
-                let problem = error("unit-mismatch", says, &phrase).label(of.in_words());
+                let problem = problem!(
+                    "unit-mismatch",
+                    &phrase,
+                    "`{name}` is {}, its range is {}",
+                    dimension.in_words(),
+                    of.in_words()
+                )
+                .label(of.in_words());
                 return self.refuse(problem.also_if(of_value, dimension.in_words()));
             }
             *end = found;
@@ -236,7 +243,7 @@ impl Checker<'_> {
             return Some((value, dimension));
         }
         self.refuse(
-            error("not-constant", format!("`{}` is not a constant", words(&expr)), &expr)
+            problem!("not-constant", &expr, "`{}` is not a constant", words(&expr))
                 .help("write a number with its unit, a parameter or an expression of these"),
         )
     }

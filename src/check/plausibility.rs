@@ -1,19 +1,8 @@
 //! Checks plausibility rules: their condition, positions and records.
 
-use super::names::normalised;
 use super::near::Near;
-use super::plan::{
-    Comparison, Distinct, Exchanged, Expr, Input, InputSide, Looks, Plausibility, Position,
-    Requirement, Step, Taken, Test,
-};
-use super::scope::Scope;
+use super::prelude::*;
 use super::steps::after;
-use super::{Checker, if_written};
-use crate::problem::error;
-use crate::source::Located;
-use crate::syntax::document::{Block, Field};
-use crate::syntax::from_pest;
-use crate::units::{Dimension, Unit};
 
 /// Words of the field `distinct`.
 const AMONG: [&str; 3] = ["channels", "sections", "sides"];
@@ -161,7 +150,7 @@ impl Checker<'_> {
                 "sides" => distinct.sides = true,
                 other => {
                     return self.refuse(
-                        error("unknown-choice", format!("`distinct` cannot be `{other}`"), &word)
+                        problem!("unknown-choice", &word, "`distinct` cannot be `{other}`")
                             .suggest(other, AMONG),
                     );
                 }
@@ -181,7 +170,7 @@ impl Checker<'_> {
             Some(Exchanged { least: number(least)?, more: number(more)? })
         });
         if found.is_none() {
-            self.problems.push(
+            self.tell(
                 error("exchanged-numbers", "`exchanged` must be two numbers between 0 and 1: a correlation, and a difference of two", field)
                     .help("write `exchanged  from 0.5, by 0.3`"),
             );

@@ -3,13 +3,9 @@
 
 use indexmap::IndexMap;
 
-use super::Checker;
 use super::names::{Assignment, Place};
-use super::plan::{Expr, Operator, Origin};
-use super::scope::Scope;
-use crate::problem::{error, warning};
-use crate::source::{Located, Span};
-use crate::syntax::phrase::{Alias, At, Node, Phrase, Pick};
+use super::prelude::*;
+use crate::syntax::phrase::{Alias, Pick};
 
 /// Largest number of positions of one quantity. Each is a column of every record and a signal in
 /// memory.
@@ -41,11 +37,11 @@ impl Checker<'_> {
             });
             let Some((place, member_at)) = named else {
                 if let Some(place) = self.place_called(&joined(&words[from..])) {
-                    self.problems.push(
-                        error(
+                    self.tell(
+                        problem!(
                             "open-place",
-                            format!("the {place} is not stated"),
                             &extent(&words[from..])?,
+                            "the {place} is not stated"
                         )
                         .help(self.members_help(&place)),
                     );
@@ -113,7 +109,7 @@ impl Checker<'_> {
             return;
         }
         if !self.always_one(conditions.iter()) {
-            self.problems.push(
+            self.tell(
                 warning("alias-gap", format!("in some sections `{alias}` stands for no position of `{place}`; they cannot be used"), span)
                 .help("exclude them from this quantity with `where ...`"),
             );
@@ -131,8 +127,8 @@ impl Checker<'_> {
         let names = self.names.places.keys().map(|place| place.replace('_', " "));
         let shown = name.replace('_', " ");
         let at = extent(words).unwrap_or_else(|| within.place());
-        self.problems.push(
-            error("unknown-place", format!("`{shown}` is not a place"), &at).suggest(&shown, names),
+        self.tell(
+            problem!("unknown-place", &at, "`{shown}` is not a place").suggest(&shown, names),
         );
     }
 
@@ -140,11 +136,13 @@ impl Checker<'_> {
         let Some(known) = self.names.places.get(place) else { return };
         let aliases = known.aliases.iter().map(|alias| alias.name.node.as_str());
         let all: Vec<&str> = known.members.iter().map(String::as_str).chain(aliases).collect();
-        self.problems.push(
-            error(
+        self.tell(
+            problem!(
                 "unknown-place",
-                format!("`{}` is not a position of `{}`", member.node, place.replace('_', " ")),
                 member,
+                "`{}` is not a position of `{}`",
+                member.node,
+                place.replace('_', " ")
             )
             .suggest(&member.node, all),
         );
@@ -179,10 +177,11 @@ impl Checker<'_> {
             };
             if all.len().saturating_mul(members.len()) > MOST_POSITIONS {
                 return self.refuse(
-                    error(
+                    problem!(
                         "too-large",
-                        format!("`{}` has more than {MOST_POSITIONS} positions here", signal.node),
                         signal,
+                        "`{}` has more than {MOST_POSITIONS} positions here",
+                        signal.node
                     )
                     .help("choose positions: `at wheelset 1 and side R`"),
                 );
@@ -229,10 +228,12 @@ impl Checker<'_> {
             return None;
         };
         if !places.contains(&place) {
-            let problem = error(
+            let problem = problem!(
                 "unknown-place",
-                format!("`{}` has no place `{}`", signal.node, place.replace('_', " ")),
                 &extent(&words[..end])?,
+                "`{}` has no place `{}`",
+                signal.node,
+                place.replace('_', " ")
             );
             let help = if places.is_empty() {
                 "it has no places".to_string()

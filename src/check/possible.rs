@@ -5,7 +5,7 @@
 //! (Kleene logic). The bounds are never too narrow. They may be too wide where an unknown name
 //! occurs twice.
 
-use super::plan::{Expr, Kind, Operator, Scalar, Type};
+use super::prelude::*;
 use super::values::{Values, leaf};
 use crate::catalog::Function;
 

@@ -1,11 +1,6 @@
 //! How values and limits are printed: the units of values, the words of limits.
 
-use super::Checker;
-use super::plan::{DatumKind, Expr, Kind};
-use crate::problem::error;
-use crate::syntax::document::{Block, Text};
-use crate::syntax::from_pest;
-use crate::units::{Dimension, Unit};
+use super::prelude::*;
 
 impl Checker<'_> {
     /// The unit in which values are printed: as stated, else that of the signal, else SI.
@@ -19,14 +14,12 @@ impl Checker<'_> {
             let unit = self.unit(&field.value)?;
             if unit.dimension != dimension {
                 return self.refuse(
-                    error(
+                    problem!(
                         "unit-mismatch",
-                        format!(
-                            "the values are {}; the unit is that of {}",
-                            dimension.in_words(),
-                            unit.dimension.in_words()
-                        ),
                         field,
+                        "the values are {}; the unit is that of {}",
+                        dimension.in_words(),
+                        unit.dimension.in_words()
                     )
                     .also(&of.span, dimension.in_words()),
                 );

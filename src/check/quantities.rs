@@ -5,18 +5,9 @@ use std::sync::Arc;
 
 use super::conditions::impossible;
 use super::expressions::whole;
-use super::names::normalised;
-use super::plan::{Expr, InputSide, Position, Quantity, QuantityWords};
-use super::scope::Scope;
+use super::prelude::*;
 use super::steps::after;
-use super::{Checker, if_written};
 use crate::catalog::NOT_CHECKED;
-use crate::problem::{error, warning};
-use crate::source::Located;
-use crate::syntax::document::{Block, Field, Text};
-use crate::syntax::from_pest;
-use crate::syntax::phrase::{Node, Phrase};
-use crate::units::Dimension;
 
 /// The largest number that a protocol may require.
 pub const MOST_COUNTED: f64 = 1e6;
@@ -65,7 +56,7 @@ impl Checker<'_> {
         if let (Some(metric), Some(other)) =
             (metric, block.field("value").or(block.field("difference")))
         {
-            self.problems.push(
+            self.tell(
                 error(
                     "metric-and-value",
                     "a quantity has either `metric`, or `value` and `difference`",
@@ -77,7 +68,7 @@ impl Checker<'_> {
         if let (Some(from), Some(other)) =
             (assessed, block.field("difference").or(metric).or(block.field("compare")))
         {
-            self.problems.push(
+            self.tell(
                 error("from-and-compared", "values of one record cannot be compared", &other.key)
                     .also(&from.key, "the record")
                     .help(format!("remove `from` or `{}`", other.key.text)),
@@ -102,7 +93,7 @@ impl Checker<'_> {
         let reports = self.reports(block, unit.as_ref().map(|unit| unit.dimension), &places);
         let minima = self.minima(block);
         if let (Some(reported), Some(limit)) = (block.field("reported"), block.field("limit")) {
-            self.problems.push(
+            self.tell(
                 error(
                     "reported-and-limit",
                     "a quantity is either reported without a limit, or has one",
@@ -114,7 +105,7 @@ impl Checker<'_> {
         let meant = block.field("reported").or(block.field("report")).is_some()
             || self.is_referred_to(block.name_text());
         if block.field("limit").is_none() && !incomplete && !meant {
-            self.problems.push(
+            self.tell(
                 warning(
                     "no-limit",
                     format!(
@@ -127,7 +118,7 @@ impl Checker<'_> {
             );
         }
         if let (Some(only), None, 2..) = (block.field("where"), minima.all, self.minimum_pairs) {
-            self.problems.push(
+            self.tell(
                 warning(
                     "minimum-inherited",
                     format!(
@@ -218,21 +209,23 @@ impl Checker<'_> {
                 if let Some(first) = found.first()
                     && first.signal.dimension() != dimension
                 {
-                    let says = format!(
-                        "the signals of one quantity must have the same dimension: another is {}",
-                        first.signal.dimension().in_words()
-                    );
                     return self
-                        .refuse(error("unit-mismatch", says, field).label(dimension.in_words()));
+                        .refuse(problem!("unit-mismatch", field, "the signals of one quantity must have the same dimension: another is {}",
+                        first.signal.dimension().in_words()).label(dimension.in_words()));
                 }
                 let again =
                     |known: &Position| known.name == *name && both_apply(&known.only, &only);
                 if found.iter().any(again) {
-                    let says =
-                        format!("`{name}` is evaluated twice, so its values would count twice");
                     let help =
                         "add conditions that exclude each other to the fields `of`: `when ...`";
-                    return self.refuse(error("position-twice", says, field).help(help));
+                    return self.refuse(
+                        problem!(
+                            "position-twice",
+                            field,
+                            "`{name}` is evaluated twice, so its values would count twice"
+                        )
+                        .help(help),
+                    );
                 }
                 found.push(Position { only: only.clone(), ..position });
             }
@@ -290,8 +283,11 @@ impl Checker<'_> {
         let (key, words) = (&field.key.text, phrase.words());
         let evident = !plain || words.parse() == Ok(value);
         let value = if evident { String::new() } else { format!(" = {value}") };
-        let says = format!("`{key}` must be a whole number, this is {words}{value}");
-        self.refuse(error("not-a-count", says, field))
+        self.refuse(problem!(
+            "not-a-count",
+            field,
+            "`{key}` must be a whole number, this is {words}{value}"
+        ))
     }
 }
 

@@ -1,11 +1,6 @@
 //! Records that a protocol declares, and which records a quantity takes or compares.
 
-use super::Checker;
-use super::names::normalised;
-use super::plan::{Center, Chosen, DeclaredRecord, Pairing, Side};
-use crate::problem::error;
-use crate::source::{Located, Span, Spanned};
-use crate::syntax::document::{Block, Field, Text};
+use super::prelude::*;
 
 /// Which records are compared.
 #[derive(Clone, Copy, Debug)]
@@ -23,19 +18,27 @@ impl Checker<'_> {
     pub fn declared_record(&mut self, name: &str, block: &Block) -> Option<DeclaredRecord> {
         let field = self.required(block, "is")?;
         if ["repeats", "originals"].contains(&name) {
-            let says =
-                format!("`{name}` is a word of the language and cannot be the name of this record");
             let help = format!("for instance `{name}_1`");
-            return self.refuse(error("reserved-name", says, block).help(help));
+            return self.refuse(
+                problem!(
+                    "reserved-name",
+                    block,
+                    "`{name}` is a word of the language and cannot be the name of this record"
+                )
+                .help(help),
+            );
         }
         let text = &field.value.text;
         let start = text.len() - text.trim_start().len();
         let end = text[start..].find(char::is_whitespace).map_or(text.len(), |at| start + at);
         let word = &text[start..end];
         let Some(side) = Side::named(word) else {
-            let says = format!("a record is simulated or measured, and not `{word}`");
-            let problem = error("unknown-record", says, &field.value.place(start..end))
-                .suggest(word, Side::ALL.map(Side::in_words));
+            let problem = problem!(
+                "unknown-record",
+                &field.value.place(start..end),
+                "a record is simulated or measured, and not `{word}`"
+            )
+            .suggest(word, Side::ALL.map(Side::in_words));
             return self.refuse(match problem.help {
                 Some(_) => problem,
                 None => problem.help("`is simulated simpack, vampire`: the side, and the names that the campaign gives to its records"),
@@ -59,7 +62,7 @@ impl Checker<'_> {
             let place = field.value.place(range);
             if let Some(first) = members.iter().find(|known| known.value == member) {
                 return self.refuse(
-                    error("duplicate-name", format!("`{member}` is named twice"), &place)
+                    problem!("duplicate-name", &place, "`{member}` is named twice")
                         .also(&first.span, "the first"),
                 );
             }
@@ -84,10 +87,9 @@ impl Checker<'_> {
         if found.is_none() && !self.is_failed(word) {
             let declared = self.names.records.iter().map(|record| record.name.as_str());
             let known = Side::ALL.map(Side::in_words).into_iter().chain(declared);
-            let problem =
-                error("unknown-record", format!("`{word}` is not a record of a campaign"), at)
-                    .suggest(word, known);
-            self.problems.push(match problem.help {
+            let problem = problem!("unknown-record", at, "`{word}` is not a record of a campaign")
+                .suggest(word, known);
+            self.tell(match problem.help {
                 Some(_) => problem,
                 None => problem.help("`simulated`, `measured`, or the name of a block `record`"),
             });
@@ -178,8 +180,10 @@ impl Checker<'_> {
         let Some(record) = record.filter(|record| record.members.len() == 1) else {
             return Some(());
         };
-        let says = format!("`{}` is one record, and several are compared", record.name);
-        self.refuse(error("one-record", says, at).also(&record.span, "declared here"))
+        self.refuse(
+            problem!("one-record", at, "`{}` is one record, and several are compared", record.name)
+                .also(&record.span, "declared here"),
+        )
     }
 
     /// The words of a comparison with what stands in a row in place of `simulated` and `measured`.

@@ -1,18 +1,11 @@
 //! Checks estimates without a limit: what of the values of a quantity, and of the data of the
 //! sections, is printed.
 
-use super::Checker;
 use super::estimates::bare;
 use super::groups::Grouped;
-use super::names::normalised;
-use super::plan::{Estimate, Report};
-use super::scope::Scope;
+use super::prelude::*;
 use crate::catalog::Statistic;
-use crate::problem::error;
-use crate::syntax::document::{Block, Field};
-use crate::syntax::from_pest;
-use crate::syntax::phrase::{At, Node, Phrase, Report as Written};
-use crate::units::{Dimension, Unit};
+use crate::syntax::phrase::Report as Written;
 
 /// What the reports of a block are of.
 #[derive(Clone, Copy, Debug)]
@@ -52,7 +45,7 @@ impl Checker<'_> {
             if let Some((_, first)) = seen.iter().find(|(known, _)| Some(known) == written.as_ref())
             {
                 let says = "the same is reported twice";
-                self.problems.push(error("duplicate-field", says, field).also(first, "the first"));
+                self.tell(error("duplicate-field", says, field).also(first, "the first"));
                 ok = false;
                 continue;
             }
@@ -126,13 +119,14 @@ impl Checker<'_> {
         if found.dimension == dimension {
             return Some(found);
         }
-        let says = format!(
+        self.refuse(problem!(
+            "unit-mismatch",
+            unit,
             "this estimate is {}, `{}` is a unit of {}",
             dimension.in_words(),
             unit.node,
             found.dimension.in_words()
-        );
-        self.refuse(error("unit-mismatch", says, unit))
+        ))
     }
 
     /// A choice parameter in place of an estimate stands for the statistic that it names.

@@ -3,17 +3,10 @@
 
 use std::collections::BTreeSet;
 
-use super::plan::{
-    Datum, DatumKind, Expr, Input, InputSide, Kind, Operator, Origin, Scalar, Side, Taken, Type,
-};
-use super::scope::{Reduce, Scope};
+use super::prelude::*;
+use super::scope::Reduce;
 use super::steps::after;
-use super::{Checker, if_written};
 use crate::catalog::{METRICS, MetricEntry, REDUCERS, Reducer, STATISTICS, Statistic};
-use crate::problem::error;
-use crate::source::{Located, Span};
-use crate::syntax::phrase::{At, Node, Phrase};
-use crate::units::Unit;
 
 /// The meaning of a statistic's name in the bound of a limit, and how to limit an expression of
 /// values instead.
@@ -37,7 +30,6 @@ impl Checker<'_> {
         self.percentile_range(reducer, &span)?;
         let Some(Reduce { own: Some(dimension), axis, side, .. }) = scope.reduce else {
             let what = reducer.in_words();
-            let says = format!("`{what}` needs a signal, and there is none here");
             let of_sections =
                 scope.group.is_some() && scope.values().is_none() && scope.limits.is_none();
             let help = if of_sections {
@@ -47,7 +39,10 @@ impl Checker<'_> {
             } else {
                 scope.reduce.map(|_| format!("name the signal: `{what} of ...`"))
             };
-            return self.refuse(error("no-signal", says, &span).help_if(help));
+            return self.refuse(
+                problem!("no-signal", &span, "`{what}` needs a signal, and there is none here")
+                    .help_if(help),
+            );
         };
         let input = Input::own(Taken::Reduced(reducer), side, &span);
         Some(scope.input(input, reducer.gives(dimension, axis), &span))
@@ -63,8 +58,11 @@ impl Checker<'_> {
         if (0.0..=100.0).contains(&percent) {
             return Some(());
         }
-        let says = format!("a percentile must be from 0 to 100, this is {percent}");
-        self.refuse(error("out-of-range", says, at))
+        self.refuse(problem!(
+            "out-of-range",
+            at,
+            "a percentile must be from 0 to 100, this is {percent}"
+        ))
     }
 
     /// The reducer of `NAME of signal`.
@@ -80,9 +78,14 @@ impl Checker<'_> {
                 let numbers = self.names.parameter_blocks.keys().chain(self.names.defines.keys());
                 let reducers = REDUCERS.iter().map(|entry| entry.name).filter(|_| of_records);
                 let known = reducers.chain(numbers.map(String::as_str));
-                let says =
-                    format!("`{word} of` is neither a value of a signal nor a share of a number");
-                self.problems.push(error("unknown-reducer", says, reducer).suggest(word, known));
+                self.tell(
+                    problem!(
+                        "unknown-reducer",
+                        reducer,
+                        "`{word} of` is neither a value of a signal nor a share of a number"
+                    )
+                    .suggest(word, known),
+                );
             }
             return None;
         };
@@ -100,11 +103,12 @@ impl Checker<'_> {
     ) -> Option<Expr> {
         let found = self.reducer(reducer, scope.reduce.is_some())?;
         let Some(Reduce { axis, side, .. }) = scope.reduce else {
-            let says = format!(
+            return self.refuse(problem!(
+                "no-records",
+                span,
                 "`{} of ...` needs the records of a section, which are not available here",
                 found.in_words()
-            );
-            return self.refuse(error("no-records", says, span));
+            ));
         };
         if self.names_side(signal, &mut BTreeSet::new()) {
             return self.of_both(found, signal, span, scope);
@@ -143,10 +147,8 @@ impl Checker<'_> {
         scope: &mut Scope,
     ) -> Option<Expr> {
         let (Some(reduce), [argument]) = (scope.reduce, arguments) else {
-            return self.refuse(error("side", format!(
-                "`{}(...)` must contain one value of a signal; it can be used in the value of a quantity or in a check",
-                name.node
-            ), span));
+            return self.refuse(problem!("side", span, "`{}(...)` must contain one value of a signal; it can be used in the value of a quantity or in a check",
+                name.node));
         };
         let side = if name.node == "measured" { InputSide::Measured } else { InputSide::Simulated };
         scope.reduce = Some(Reduce { side, ..reduce });
@@ -180,11 +182,15 @@ impl Checker<'_> {
             return number(Kind::LimitOf(path.to_string()), *dimension);
         }
         if let Some(statistic) = Statistic::named(path).filter(|_| scope.limits.is_some()) {
-            let says = format!(
-                "there is no other limit of the {} that this could refer to",
-                statistic.title(self.ddof)
+            return self.refuse(
+                problem!(
+                    "no-such-limit",
+                    span,
+                    "there is no other limit of the {} that this could refer to",
+                    statistic.title(self.ddof)
+                )
+                .help(LIMITS_NOT_VALUES),
             );
-            return self.refuse(error("no-such-limit", says, span).help(LIMITS_NOT_VALUES));
         }
         if let Some(reducer) = Reducer::named(path) {
             return self.own_reducer(reducer, span.clone(), scope);
@@ -281,11 +287,14 @@ impl Checker<'_> {
             if asked { self.campaign_column(name, span) } else { None }
         });
         if column.is_some() && vehicle.is_some() {
-            let says = format!("`{name}` is both a vehicle datum and a section column");
             return Some(
                 self.refuse(
-                    error("ambiguous", says, span)
-                        .help(format!("write `vehicle.{name}` or `section.{name}`")),
+                    problem!(
+                        "ambiguous",
+                        span,
+                        "`{name}` is both a vehicle datum and a section column"
+                    )
+                    .help(format!("write `vehicle.{name}` or `section.{name}`")),
                 ),
             );
         }
@@ -300,10 +309,11 @@ impl Checker<'_> {
                 let ty = datum_type(&self.names.columns[index].kind);
                 return Some(Some(Expr { kind, ty, span: span.clone() }));
             }
-            let says = format!(
+            let problem = problem!(
+                "no-section",
+                span,
                 "`{path}` differs between sections, but this expression has one value for all sections"
             );
-            let problem = error("no-section", says, span);
             // Only the scope of limits has the vehicle but no section.
             return Some(self.refuse(match (scope.vehicle, is_zone) {
                 (true, true) => problem.help("a limit that depends on the zone ends with `for each zone`"),
@@ -317,11 +327,16 @@ impl Checker<'_> {
             let ty = datum_type(&self.names.vehicle[index].kind);
             return Some(Some(Expr { kind: Kind::Vehicle(index), ty, span: span.clone() }));
         }
-        let says =
-            format!("`{path}` depends on the vehicle; expected a number that the protocol fixes");
-        Some(self.refuse(
-            error("no-vehicle", says, span).help("make it a `parameter`, which a campaign can set"),
-        ))
+        Some(
+            self.refuse(
+                problem!(
+                    "no-vehicle",
+                    span,
+                    "`{path}` depends on the vehicle; expected a number that the protocol fixes"
+                )
+                .help("make it a `parameter`, which a campaign can set"),
+            ),
+        )
     }
 
     /// The column that says to which campaign a section belongs: it need not be declared, and is
@@ -371,9 +386,11 @@ impl Checker<'_> {
             return;
         }
         if self.is_signal(path) {
-            let says = format!("expected a number, `{path}` is a signal");
             let help = format!("take a number from it: `mean of {path}`");
-            self.problems.push(error("signal-not-number", says, span).help(help));
+            self.tell(
+                problem!("signal-not-number", span, "expected a number, `{path}` is a signal")
+                    .help(help),
+            );
             return;
         }
         let digits = path.find(|c: char| !c.is_ascii_digit()).unwrap_or(0);
@@ -381,8 +398,7 @@ impl Checker<'_> {
             let (number, unit) = path.split_at(digits);
             let near = Unit::parse(unit).err().and_then(|unknown| unknown.near);
             let help = near.map(|near| format!("did you mean `{number} {near}`?"));
-            let says = format!("`{unit}` is not a known unit");
-            self.problems.push(error("unknown-unit", says, span).help_if(help));
+            self.tell(problem!("unknown-unit", span, "`{unit}` is not a known unit").help_if(help));
             return;
         }
         let mut known: Vec<String> =
@@ -417,8 +433,9 @@ impl Checker<'_> {
                 known.push(format!("vehicle.{}", datum.name));
             }
         }
-        let says = format!("nothing is called `{path}` here");
-        self.problems.push(error("unknown-name", says, span).suggest(path, &known));
+        self.tell(
+            problem!("unknown-name", span, "nothing is called `{path}` here").suggest(path, &known),
+        );
     }
 
     /// The choice that a bare word stands for: the word itself, or the value of the choice

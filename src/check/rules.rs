@@ -2,19 +2,8 @@
 //! independent units.
 
 use super::find::FOUND_SECTIONS;
-use super::names::normalised;
-use super::plan::{
-    Axis, Check, DatumKind, Expr, Independent, Input, Kind, OnFault, Origin, SectionRules, Type,
-    Zone,
-};
-use super::scope::Scope;
-use super::{Checker, if_written};
+use super::prelude::*;
 use crate::metrics::percentile::Method;
-use crate::problem::error;
-use crate::source::Located;
-use crate::syntax::document::{Block, Field};
-use crate::syntax::from_pest;
-use crate::units::Dimension;
 
 impl Checker<'_> {
     /// An axis such as `distance in m`, of one of the allowed dimensions.
@@ -23,10 +12,18 @@ impl Checker<'_> {
         let text = unit.to_text();
         let unit = self.unit(&text)?;
         if !allowed.contains(&unit.dimension) {
-            let says = format!("`{}` cannot be {}", field.key.text, unit.dimension.in_words());
             let help =
                 "write for instance `axis distance in m` or `axis time in s`; `time time in s`";
-            return self.refuse(error("unit-mismatch", says, &text).help(help));
+            return self.refuse(
+                problem!(
+                    "unit-mismatch",
+                    &text,
+                    "`{}` cannot be {}",
+                    field.key.text,
+                    unit.dimension.in_words()
+                )
+                .help(help),
+            );
         }
         Some(Axis { column: name.node, unit, span: field.value.span.clone() })
     }
@@ -203,9 +200,10 @@ impl Checker<'_> {
             "n-1" => 1,
             "n" => 0,
             other => {
-                let says = format!("`{other}` is not a divisor of the variance");
-                let problem = error("unknown-choice", says, field).help("write `n-1` or `n`");
-                self.problems.push(problem);
+                let problem =
+                    problem!("unknown-choice", field, "`{other}` is not a divisor of the variance")
+                        .help("write `n-1` or `n`");
+                self.tell(problem);
                 1
             }
         }
@@ -224,9 +222,15 @@ impl Checker<'_> {
             (_, Some(index)) => Independent::Column(index),
             _ => {
                 let known = self.names.columns.iter().map(|datum| datum.name.as_str());
-                let says = format!("`{word}` is neither `site`, `section` nor a section column");
                 let known = known.chain(["site", "section", "campaign"]);
-                self.problems.push(error("unknown-name", says, field).suggest(&word, known));
+                self.tell(
+                    problem!(
+                        "unknown-name",
+                        field,
+                        "`{word}` is neither `site`, `section` nor a section column"
+                    )
+                    .suggest(&word, known),
+                );
                 Independent::Site
             }
         }
@@ -239,13 +243,13 @@ impl Checker<'_> {
             if let Some(block) = self.blocks.iter().find(|block| block.kind.text == "zone") {
                 let says = "there are zones, but no section column states the zone of a section";
                 let help = "add to `sections`: `zone zone`";
-                self.problems.push(error("no-zone-column", says, block).help(help));
+                self.tell(error("no-zone-column", says, block).help(help));
             }
             return;
         };
         let datum = self.names.columns[index].clone();
         let DatumKind::Words(words) = &datum.kind else {
-            self.problems.push(
+            self.tell(
                 error("zone-column", "the zone column must be a choice of words", &datum.span)
                     .help("write `one of zones`, which stands for the names of the zone blocks"),
             );
@@ -258,10 +262,10 @@ impl Checker<'_> {
         });
         for word in words.iter().filter(|word| !self.zone_names.contains(word)) {
             self.problems.push(
-                error(
+                problem!(
                     "unknown-zone",
-                    format!("sections may be of zone {word}, which has no block"),
                     &datum.span,
+                    "sections may be of zone {word}, which has no block"
                 )
                 .help(format!(
                     "add a block `zone {word}`, or declare the column with `one of zones`"
@@ -271,13 +275,9 @@ impl Checker<'_> {
         let strange = |block: &&Block| !words.iter().any(|word| word == block.name_text());
         for block in self.blocks.iter().filter(|block| block.kind.text == "zone").filter(strange) {
             self.problems.push(
-                error(
-                    "unknown-zone",
-                    format!("no section can be of zone {}", block.name_text()),
-                    block,
-                )
-                .also(&datum.span, "its words are those of the zone column")
-                .help("declare the column with `one of zones`"),
+                problem!("unknown-zone", block, "no section can be of zone {}", block.name_text())
+                    .also(&datum.span, "its words are those of the zone column")
+                    .help("declare the column with `one of zones`"),
             );
         }
     }

@@ -1,12 +1,10 @@
 //! The names that an expression can use, by where it stands.
 
 use super::names::Assignment;
-use super::plan::{Expr, Input, InputSide, Kind, Origin, Taken, Taking, Type};
-use crate::source::Span;
-use crate::units::Dimension;
+use super::prelude::*;
 
 /// The names that an expression can use, and the values taken from signals that it contains.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Scope {
     pub vehicle: bool,
     pub section: bool,
@@ -49,34 +47,14 @@ pub struct Reduce {
 }
 
 impl Scope {
-    fn new(vehicle: bool, section: bool) -> Self {
-        Self {
-            vehicle,
-            section,
-            samples: false,
-            own_of_both: None,
-            reduce: None,
-            pair: None,
-            limits: None,
-            zone: None,
-            group: None,
-            value: None,
-            others: Vec::new(),
-            at: Assignment::new(),
-            factor: Dimension::ONE,
-            inputs: Vec::new(),
-            words: Vec::new(),
-        }
-    }
-
     /// Parameters and numbers only.
     pub fn constant() -> Self {
-        Self::new(false, false)
+        Self::default()
     }
 
     /// Parameters and the data of the vehicle.
     pub fn vehicle() -> Self {
-        Self::new(true, false)
+        Self { vehicle: true, ..Self::default() }
     }
 
     /// As [`Self::vehicle`], in one zone where it is for each.
@@ -86,7 +64,7 @@ impl Scope {
 
     /// As [`Self::vehicle`], with the data of a section.
     pub fn section() -> Self {
-        Self::new(true, true)
+        Self { section: true, ..Self::vehicle() }
     }
 
     /// Samples at these positions; `own_of_both` where those of both sides can be used.
@@ -110,7 +88,7 @@ impl Scope {
     pub fn reducing(own: Option<Dimension>, axis: Dimension) -> Self {
         Self {
             reduce: Some(Reduce { own, axis, side: InputSide::Own, metrics: false }),
-            ..Self::new(true, true)
+            ..Self::section()
         }
     }
 
@@ -118,13 +96,13 @@ impl Scope {
     pub fn comparing(own: Option<Dimension>, axis: Dimension) -> Self {
         Self {
             reduce: Some(Reduce { own, axis, side: InputSide::Own, metrics: own.is_some() }),
-            ..Self::new(true, true)
+            ..Self::section()
         }
     }
 
     /// As [`Self::section`], with the two compared values of this dimension.
     pub fn pair(dimension: Dimension) -> Self {
-        Self { pair: Some(dimension), ..Self::new(true, true) }
+        Self { pair: Some(dimension), ..Self::section() }
     }
 
     /// Dimension of the values of a group, where there are any.

@@ -1,15 +1,9 @@
 //! Checks what only expressions over samples have: channels at positions, filters inside
 //! expressions, operations along the axis.
 
-use super::Checker;
 use super::names::{Assignment, Signal};
-use super::plan::{AxisOperation, Expr, Kind, Origin, Side};
-use super::scope::Scope;
+use super::prelude::*;
 use super::steps::after;
-use crate::problem::error;
-use crate::source::Span;
-use crate::syntax::phrase::{At, Node, Phrase};
-use crate::units::Dimension;
 
 impl Checker<'_> {
     /// The signal that an expression stands for at the given positions.
@@ -58,8 +52,11 @@ impl Checker<'_> {
                     "a signal and optionally `time`"
                 };
                 let (name_of, count) = (&name.node, arguments.len());
-                let says = format!("`{name_of}` needs {takes}; number of arguments: {count}");
-                return self.refuse(error("arguments", says, name));
+                return self.refuse(problem!(
+                    "arguments",
+                    name,
+                    "`{name_of}` needs {takes}; number of arguments: {count}"
+                ));
             }
         };
         let signal = self.expr(of, scope);
@@ -77,8 +74,12 @@ impl Checker<'_> {
                 if !(matches!(&second.node, Node::Path(path) if path == "time")
                     && (self.has_time || axis == Dimension::TIME)) =>
             {
-                let says = format!("`{}` is computed over the axis or over `time`", name.node);
-                let problem = error("arguments", says, second);
+                let problem = problem!(
+                    "arguments",
+                    second,
+                    "`{}` is computed over the axis or over `time`",
+                    name.node
+                );
                 return self.refuse(if self.has_time {
                     problem
                 } else {
@@ -129,11 +130,8 @@ impl Checker<'_> {
     /// The samples of one side: `simulated`, `measured`.
     pub fn side_of_own(&mut self, side: Side, span: &Origin, scope: &Scope) -> Option<Expr> {
         let Some(dimension) = scope.own_of_both else {
-            let says = format!(
-                "`{}` can only be used as samples in the `metric` of a quantity and in plausibility rules",
-                side.in_words()
-            );
-            return self.refuse(error("side", says, span).help(
+            return self.refuse(problem!("side", span, "`{}` can only be used as samples in the `metric` of a quantity and in plausibility rules",
+                side.in_words()).help(
                 "elsewhere an expression is evaluated for simulation and measurement alike",
             ));
         };
@@ -146,8 +144,7 @@ impl Checker<'_> {
             return;
         }
         let names = &self.names;
-        let problem =
-            error("unknown-signal", format!("no channel or signal is called `{name}`"), span);
+        let problem = problem!("unknown-signal", span, "no channel or signal is called `{name}`");
         // `ay_I` is a column of the records: the channel at a position.
         let column = name.rsplit_once('_').and_then(|(channel, member)| {
             let has = |place: &&String| {
@@ -158,7 +155,7 @@ impl Checker<'_> {
             let place = known.places.iter().find(has)?;
             Some(format!("`{channel}` at a position: `{channel} at {place} {member}`"))
         });
-        self.problems.push(match column {
+        self.tell(match column {
             Some(help) => problem.help(help),
             None => problem.suggest(name, names.signals.keys()),
         });
@@ -182,8 +179,14 @@ impl Checker<'_> {
         match &signal.unit {
             Some(unit) if unit.dimension != found.dimension() => {
                 let words = found.dimension().in_words();
-                let says = format!("signal `{name}` is declared in {unit}, but is {words}");
-                self.refuse(error("unit-mismatch", says, &signal.span).also(&found, words))
+                self.refuse(
+                    problem!(
+                        "unit-mismatch",
+                        &signal.span,
+                        "signal `{name}` is declared in {unit}, but is {words}"
+                    )
+                    .also(&found, words),
+                )
             }
             _ => Some(found),
         }
@@ -200,12 +203,14 @@ impl Checker<'_> {
         let mut filled = signal.pattern.clone();
         for place in &signal.places {
             let Some(member) = at.get(place) else {
-                let says =
-                    format!("`{name}` has a position for each {place}; the {place} is not stated");
                 return self.refuse(
-                    error("open-place", says, used)
-                        .also(&signal.span, format!("at each {place}"))
-                        .help(format!("write `{name} at {place} ...`")),
+                    problem!(
+                        "open-place",
+                        used,
+                        "`{name}` has a position for each {place}; the {place} is not stated"
+                    )
+                    .also(&signal.span, format!("at each {place}"))
+                    .help(format!("write `{name} at {place} ...`")),
                 );
             };
             filled = filled.replace(&format!("{{{place}}}"), member);

@@ -39,7 +39,7 @@ impl Checker<'_> {
                     && without_digits(name) != without_digits(known)
             };
             let Some(near) = siblings().find(slip).map(str::to_string) else { continue };
-            self.problems.push(warning("near-name", format!(
+            self.tell(warning("near-name", format!(
                 "the parent has no {kind} `{name}`: this adds one, and `{near}` of the parent stays as it is"
             ), block).help(format!("to override `{near}`, use that name")));
         }

@@ -1,19 +1,12 @@
 //! Checks filter chains: their steps, and the order of these.
 
-use super::Checker;
-use super::plan::{Kind, Scalar, Step, StepSpec};
+use super::prelude::*;
 use super::quantities::is_whole;
-use super::scope::Scope;
 use super::wordings::Filled;
 use crate::catalog::{Part, STEPS, StepEntry, StepKind};
 use crate::metrics::filter::{Band, Cutoff, Phase};
 use crate::metrics::window::Ends;
-use crate::problem::error;
-use crate::source::{Located, Span};
-use crate::syntax::document::{Block, Field, Text};
-use crate::syntax::from_pest;
-use crate::syntax::phrase::{At, Item, Step as WrittenStep};
-use crate::units::Dimension;
+use crate::syntax::phrase::{Item, Step as WrittenStep};
 
 /// Largest number of steps of a chain, including those of the filters that it names. Each is a pass
 /// over every record and a signal in memory.
@@ -71,10 +64,15 @@ impl Checker<'_> {
             all.extend(steps);
             let count = all.len();
             if count > MOST_STEPS {
-                let says =
-                    format!("the filter has {count} steps; there can be at most {MOST_STEPS}");
                 let help = "filters that use each other twice double at every level";
-                return self.refuse(error("too-large", says, part).help(help));
+                return self.refuse(
+                    problem!(
+                        "too-large",
+                        part,
+                        "the filter has {count} steps; there can be at most {MOST_STEPS}"
+                    )
+                    .help(help),
+                );
             }
         }
         ok.then_some(all)
@@ -90,8 +88,10 @@ impl Checker<'_> {
             let mut known: Vec<&str> =
                 self.names.filters.keys().map(String::as_str).chain(steps).collect();
             known.dedup();
-            let says = format!("no filter is called `{name}`");
-            return self.refuse(error("unknown-filter", says, span).suggest(name, known));
+            return self.refuse(
+                problem!("unknown-filter", span, "no filter is called `{name}`")
+                    .suggest(name, known),
+            );
         };
         let result = self.inside("filter", name, span, |checker| {
             checker.required(&block, "step")?;
@@ -184,7 +184,7 @@ impl Checker<'_> {
         }
         let (finest, step) = (show_number(finest, *dimension), show_number(*step, *dimension));
         self.refuse(
-            error("out-of-range", format!("the step of {step} is finer than {finest}"), place)
+            problem!("out-of-range", place, "the step of {step} is finer than {finest}")
                 .help("a step far below the sample distance adds points but no information"),
         )
     }
@@ -224,9 +224,11 @@ impl Checker<'_> {
                 }
                 let (order, _) = filled.options.first().copied().flatten()?;
                 if !is_whole(order, 1.0..=20.0) {
-                    let says =
-                        format!("the order must be a whole number from 1 to 20, this is {order}");
-                    return self.refuse(error("out-of-range", says, span));
+                    return self.refuse(problem!(
+                        "out-of-range",
+                        span,
+                        "the order must be a whole number from 1 to 20, this is {order}"
+                    ));
                 }
                 words.push(format!(", order {order}, {first}, {second}"));
                 let phase = phase(first);

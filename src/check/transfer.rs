@@ -1,13 +1,10 @@
 //! Checks the step of a transfer function: poles and zeros of the wording.
 
-use super::Checker;
-use super::plan::StepSpec;
+use super::prelude::*;
 use super::steps::phase;
 use super::wordings::Filled;
 use crate::catalog::{Part, StepEntry};
 use crate::metrics::filter::{Roots, TransferFunction, Warping};
-use crate::problem::error;
-use crate::source::Span;
 
 impl Checker<'_> {
     /// A transfer function: `transfer function poles 12.5 Hz quality 0.63 zero 12.5 Hz, gain 2`.

@@ -2,16 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use super::names::normalised;
-use super::plan::{Decision, Evaluation, Over, Quantity, Records, Rule, Side, VerdictRule};
+use super::prelude::*;
 use super::quantities::is_whole;
-use super::{Checker, all};
-use crate::problem::{error, warning};
-use crate::source::{Located, Span};
-use crate::syntax::document::{Block, Field};
-use crate::syntax::from_pest;
-use crate::syntax::phrase::{At, OverVerdicts, Phrase, Verdict as Written};
-use crate::units::Dimension;
+use crate::syntax::phrase::{OverVerdicts, Verdict as Written};
 
 /// Words of the verdict without a name.
 const VALIDATED: [&str; 2] = ["validated", "not validated"];
@@ -108,9 +101,11 @@ impl Checker<'_> {
                     None => "neither `holds` nor `judged by`",
                     Some(_) => "both `holds` and `judged by`",
                 };
-                let says = format!("verdict `{}` has {has}", block.name_text());
                 let help = "write one of `holds` and `judged by`";
-                self.problems.push(error("verdict-rule", says, block).help(help));
+                self.tell(
+                    problem!("verdict-rule", block, "verdict `{}` has {has}", block.name_text())
+                        .help(help),
+                );
                 Decision::Limits { rule: Rule::EveryLimit, quantities: about }
             }
         };
@@ -149,7 +144,7 @@ impl Checker<'_> {
             _ => Some(format!("a verdict has two words, here {} {}", if parts.len() == 1 { "is" } else { "are" }, parts.len())),
         };
         if let Some(says) = wrong {
-            self.problems.push(
+            self.tell(
                 error("verdict-words", says, field).help("write the word if it holds and the word if it does not, separated by a comma: `accepted, not accepted`"),
             );
             return default;
@@ -177,12 +172,11 @@ impl Checker<'_> {
                         "compared" => "a comparison".into(),
                         side => format!("`from {side}`"),
                     };
-                    let says = format!("no quantity is {of_kind}");
-                    self.problems.push(error("unknown-quantity", says, item));
+                    self.tell(problem!("unknown-quantity", item, "no quantity is {of_kind}"));
                 }
             } else {
-                self.problems.push(
-                    error("unknown-quantity", format!("there is no quantity `{name}`"), item)
+                self.tell(
+                    problem!("unknown-quantity", item, "there is no quantity `{name}`")
                         .suggest(name, known.iter().map(String::as_str).chain(KINDS)),
                 );
             }
@@ -193,11 +187,11 @@ impl Checker<'_> {
     /// Reports a field `of` where no limits count.
     fn needs_limits(&mut self, of: Option<&Field>, why: &str) {
         if let Some(field) = of {
-            self.problems.push(
-                error(
+            self.tell(
+                problem!(
                     "verdict-of",
-                    format!("`of` names quantities whose limits count, but {why}"),
                     &field.key,
+                    "`of` names quantities whose limits count, but {why}"
                 )
                 .help("remove `of`"),
             );
@@ -244,8 +238,11 @@ impl Checker<'_> {
         }
         let wanted = wanted as usize;
         if wanted > there && !self.problems.any_error() {
-            let says = format!("the rule needs {wanted} {what}, there are {there}");
-            self.problems.push(error("out-of-range", says, count));
+            self.tell(problem!(
+                "out-of-range",
+                count,
+                "the rule needs {wanted} {what}, there are {there}"
+            ));
         }
         Some(wanted)
     }
@@ -277,8 +274,8 @@ impl Checker<'_> {
     fn verdict_named(&mut self, name: &At<String>, names: &Names) -> Option<usize> {
         let found = names.names.iter().position(|known| *known == name.node);
         if found.is_none() {
-            self.problems.push(
-                error("unknown-verdict", format!("there is no verdict `{}`", name.node), name)
+            self.tell(
+                problem!("unknown-verdict", name, "there is no verdict `{}`", name.node)
                     .suggest(&name.node, &names.names),
             );
         }
@@ -320,7 +317,7 @@ impl Checker<'_> {
             if !quantity.limits.is_empty() && !about(at) {
                 let id = &quantity.id;
                 let says = format!("no verdict uses quantity `{id}`: its limits have no effect");
-                self.problems.push(warning("quantity-without-verdict", says, &quantity.span));
+                self.tell(warning("quantity-without-verdict", says, &quantity.span));
             }
         }
     }

@@ -1,13 +1,8 @@
 //! Checks weights, and numbers of several groups: `mean weighted by length`, `mean of (mean for
 //! each zone)`.
 
-use super::Checker;
 use super::estimates::{has_weights, reducer_name};
-use super::plan::{Expr, Kind, Origin, Scalar, Taking};
-use super::scope::Scope;
-use crate::problem::error;
-use crate::source::Span;
-use crate::syntax::phrase::{At, Node, Phrase};
+use super::prelude::*;
 
 impl Checker<'_> {
     /// `mean weighted by length`, `share weighted by length where value <= 60 kN`.
@@ -35,10 +30,15 @@ impl Checker<'_> {
             _ => return self.no_weight("this", span),
         };
         if self.names.estimates.contains_key(&name) {
-            let says =
-                format!("`{name}` is an estimate; only the statistics in it can be weighted");
             let help = "write them there: `mean weighted by length + 3 * std weighted by length`";
-            return self.refuse(error("no-weight", says, span).help(help));
+            return self.refuse(
+                problem!(
+                    "no-weight",
+                    span,
+                    "`{name}` is an estimate; only the statistics in it can be weighted"
+                )
+                .help(help),
+            );
         }
         if name == "n" {
             return self.no_weight("`n`", span);
@@ -68,7 +68,7 @@ impl Checker<'_> {
     /// Reports what does not depend on weights.
     pub fn no_weight(&mut self, what: &str, span: &Span) -> Option<Expr> {
         self.refuse(
-            error("no-weight", format!("{what} does not depend on weights"), span)
+            problem!("no-weight", span, "{what} does not depend on weights")
                 .help("`mean`, `std`, `rms`, `median`, `p80` and `share` can be weighted"),
         )
     }
@@ -104,7 +104,7 @@ impl Checker<'_> {
     /// `(mean for each zone)` where one number is needed.
     pub fn many_numbers(&mut self, keys: &[At<String>], span: &Origin) -> Option<Expr> {
         let keys = keys.iter().map(At::words).collect::<Vec<_>>().join(" and ");
-        self.refuse(error("many-numbers", format!("this gives a number for each {keys}, but one number is needed"), span).help(format!(
+        self.refuse(problem!("many-numbers", span, "this gives a number for each {keys}, but one number is needed").help(format!(
             "take one number of them: `mean of (... for each {keys})`; a limit for each group has `for each {keys}` at its end"
         )))
     }

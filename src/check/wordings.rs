@@ -1,11 +1,9 @@
 //! Checks wordings of the registry, of steps and metrics: their words, slots and options.
 
-use super::Checker;
+use super::prelude::*;
 use crate::catalog::{Form, METRICS, Part};
-use crate::problem::{Problem, error, nearest};
-use crate::source::Span;
-use crate::syntax::phrase::{At, Item, Node, Phrase, Step as Written};
-use crate::units::Dimension;
+use crate::problem::nearest;
+use crate::syntax::phrase::{Item, Step as Written};
 
 /// Smallest extent of a window or grid, in m or s. Smaller ones are mistakes: no record has so many
 /// samples.
@@ -25,7 +23,7 @@ pub struct Filled {
 impl Filled {
     fn option_said(&mut self, name: &'static str, place: &Span) -> Result<(), Problem> {
         if let Some((_, first)) = self.said.iter().find(|(said, _)| *said == name) {
-            return Err(error("duplicate-option", format!("`{name}` is stated twice"), place)
+            return Err(problem!("duplicate-option", place, "`{name}` is stated twice")
                 .also(first, "the first"));
         }
         self.said.push((name, place.clone()));
@@ -124,10 +122,11 @@ impl Checker<'_> {
                     self.positive(name, value, &place)?;
                     if value < SMALLEST_EXTENT {
                         let unit = if found == Dimension::TIME { "µs" } else { "µm" };
-                        let says = format!(
+                        return self.refuse(problem!(
+                            "out-of-range",
+                            &place,
                             "the {name} is below 1 {unit}, finer than the samples of a record"
-                        );
-                        return self.refuse(error("out-of-range", says, &place));
+                        ));
                     }
                 }
                 Part::Frequency(name) | Part::FrequencyOrZero(name) => {
@@ -158,10 +157,11 @@ impl Checker<'_> {
         if ok {
             return Some(());
         }
-        self.refuse(error(
+        self.refuse(problem!(
             "unit-mismatch",
-            format!("{name}: expected {needed}, this is {}", found.in_words()),
             place,
+            "{name}: expected {needed}, this is {}",
+            found.in_words()
         ))
     }
 
@@ -170,7 +170,7 @@ impl Checker<'_> {
         if value > 0.0 && value.is_finite() {
             return Some(());
         }
-        self.refuse(error("out-of-range", format!("the {name} must be above zero"), place))
+        self.refuse(problem!("out-of-range", place, "the {name} must be above zero"))
     }
 
     /// An option: `order 4`, `50 points`, `zero-phase`, or the name of a choice parameter.
@@ -218,8 +218,7 @@ impl Checker<'_> {
         } else {
             "step"
         };
-        let problem =
-            error("unknown-option", format!("this is not an option of the {what}"), &place);
+        let problem = problem!("unknown-option", &place, "this is not an option of the {what}");
         self.refuse(match nearest(said, known.iter().map(String::as_str)) {
             Some(near) => problem.help(format!("did you mean `{near}`?")),
             None if known.is_empty() => problem.help("it has no option"),
@@ -228,7 +227,7 @@ impl Checker<'_> {
     }
 
     fn note(&mut self, result: Result<(), Problem>) -> Option<()> {
-        result.map_err(|problem| self.problems.push(problem)).ok()
+        result.map_err(|problem| self.tell(problem)).ok()
     }
 }
 

@@ -19,6 +19,14 @@ pub struct Document {
     pub trailing: Vec<String>,
 }
 
+impl Document {
+    /// A document without blocks and comments.
+    pub fn empty(source: &Arc<Source>) -> Self {
+        let (leading, blocks, trailing) = Default::default();
+        Self { source: Arc::clone(source), leading, blocks, trailing }
+    }
+}
+
 /// A block such as `quantity Y_max "Guiding force, maximum"`, with the fields indented below it.
 #[derive(Clone, Debug)]
 pub struct Block {

@@ -64,11 +64,12 @@ pub fn phrase(text: &str) -> String {
     out
 }
 
-/// Tracks whether a place in a phrase is inside quotes.
+/// Tracks whether a place in a phrase is inside quotes, and in how many parentheses.
 #[derive(Debug, Default)]
 pub struct Quotes {
     pub inside: bool,
     escaped: bool,
+    depth: usize,
 }
 
 impl Quotes {
@@ -77,9 +78,18 @@ impl Quotes {
             self.escaped = false;
         } else if c == '"' {
             self.inside = !self.inside;
-        } else if c == '\\' && self.inside {
-            self.escaped = true;
+        } else if self.inside {
+            self.escaped = c == '\\';
+        } else if c == '(' {
+            self.depth += 1;
+        } else if c == ')' {
+            self.depth = self.depth.saturating_sub(1);
         }
+    }
+
+    /// Whether the place is inside quotes or parentheses.
+    pub fn open(&self) -> bool {
+        self.inside || self.depth > 0
     }
 }
 
@@ -96,10 +106,10 @@ pub fn wrap_phrase(phrase: &str, width: usize) -> Vec<String> {
 /// The cases of a phrase, each `... when ...,`; the whole phrase if it has none.
 fn arms(phrase: &str) -> Vec<String> {
     let mut arms: Vec<String> = Vec::new();
-    let (mut quotes, mut depth) = (Quotes::default(), 0_usize);
+    let mut quotes = Quotes::default();
     let (mut conditional, mut over) = (false, true);
     for word in phrase.split(' ') {
-        let outside = !quotes.inside && depth == 0;
+        let outside = !quotes.open();
         match arms.last_mut() {
             Some(arm) if !over => {
                 arm.push(' ');
@@ -111,15 +121,8 @@ fn arms(phrase: &str) -> Vec<String> {
             }
         }
         conditional |= outside && word == "when";
-        for c in word.chars() {
-            quotes.pass(c);
-            match c {
-                '(' if !quotes.inside => depth += 1,
-                ')' if !quotes.inside => depth = depth.saturating_sub(1),
-                _ => {}
-            }
-        }
-        over = conditional && !quotes.inside && depth == 0 && word.ends_with(',');
+        word.chars().for_each(|c| quotes.pass(c));
+        over = conditional && !quotes.open() && word.ends_with(',');
     }
     arms
 }
@@ -127,13 +130,12 @@ fn arms(phrase: &str) -> Vec<String> {
 /// Text in parentheses stays together if it fits on a line.
 fn wrap_arm(phrase: &str, width: usize) -> Vec<String> {
     let mut segments: Vec<String> = Vec::new();
-    let (mut quotes, mut depth) = (Quotes::default(), 0_usize);
-    let mut open = false;
+    let mut quotes = Quotes::default();
     let mut start = 0;
     for word in phrase.split(' ') {
         let joins = matches!(word, "and" | "or" | "when" | "otherwise" | "then");
         match segments.last_mut() {
-            Some(last) if open || !(last.ends_with(',') || joins) => {
+            Some(last) if quotes.open() || !(last.ends_with(',') || joins) => {
                 last.push(' ');
                 last.push_str(word);
             }
@@ -141,17 +143,12 @@ fn wrap_arm(phrase: &str, width: usize) -> Vec<String> {
         }
         for (at, c) in word.char_indices() {
             quotes.pass(c);
-            match c {
-                '(' if !quotes.inside => {
-                    // If parentheses are too long for a line, the inner ones are tried.
-                    let fits = depth > 0 || parens_fit(&phrase[start + at..], width);
-                    depth += usize::from(fits);
-                }
-                ')' if !quotes.inside => depth = depth.saturating_sub(1),
-                _ => {}
+            // If parentheses are too long for a line, the inner ones are tried.
+            let opens = c == '(' && !quotes.inside && quotes.depth == 1;
+            if opens && !parens_fit(&phrase[start + at..], width) {
+                quotes.depth = 0;
             }
         }
-        open = quotes.inside || depth > 0;
         start += word.len() + 1;
     }
     fill(segments, width)
@@ -159,19 +156,11 @@ fn wrap_arm(phrase: &str, width: usize) -> Vec<String> {
 
 /// Whether the parentheses at the start of a text have at most `width` columns.
 fn parens_fit(text: &str, width: usize) -> bool {
-    let (mut quotes, mut depth) = (Quotes::default(), 0_usize);
-    for c in text.chars().take(width) {
+    let mut quotes = Quotes::default();
+    text.chars().take(width).any(|c| {
         quotes.pass(c);
-        match c {
-            '(' if !quotes.inside => depth += 1,
-            ')' if !quotes.inside => depth = depth.saturating_sub(1),
-            _ => {}
-        }
-        if depth == 0 {
-            return true;
-        }
-    }
-    false
+        quotes.depth == 0
+    })
 }
 
 /// Breaks prose at single blanks. Joined by blanks, the lines give the prose again.

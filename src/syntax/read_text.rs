@@ -7,10 +7,11 @@ use std::sync::Arc;
 use super::document::{Block, Document, Field, Text};
 use super::keys::{Key, Kind, Sort};
 use super::lines::{self, Fault};
+use super::phrase::normalised;
 use super::rules::{self, Form, Reader};
 use super::split::{Item, RawBlock, split};
-use crate::problem::{Problems, error};
-use crate::source::Source;
+use crate::problem::{Problem, Problems, error, problem};
+use crate::source::{Source, Span};
 
 /// Reads the text form. Unknown or duplicate blocks and fields are left out after a problem. One
 /// with a slightly misspelt word is read as the similar one.
@@ -31,20 +32,44 @@ pub fn read_text(source: &Arc<Source>, problems: &mut Problems) -> Document {
     }
 }
 
+/// A header or a field as it is read: its text, and where this stands in the source.
+struct Written<'a> {
+    source: &'a Arc<Source>,
+    item: &'a Item,
+    text: String,
+}
+
+impl<'a> Written<'a> {
+    fn new(source: &'a Arc<Source>, item: &'a Item) -> Self {
+        Self { source, item, text: item.text(source) }
+    }
+
+    fn span(&self, range: &Range<usize>) -> Span {
+        let start = self.item.range.start;
+        self.source.span(start + range.start..start + range.end)
+    }
+
+    /// The text from here to its end.
+    fn rest(&self, from: usize) -> Text {
+        let span = self.source.span(self.item.range.start + from..self.item.range.end);
+        Text { text: self.text[from..].to_owned(), span, exact: true }
+    }
+
+    fn fault(&self, fault: Fault) -> Problem {
+        error("unexpected-text", fault.says, &self.span(&fault.at)).help_if(fault.help)
+    }
+}
+
 fn read_block(source: &Arc<Source>, raw: RawBlock, reader: &mut Reader<'_>) {
-    let place = |range: &Range<usize>, within: &Item| {
-        source.span(within.range.start + range.start..within.range.start + range.end)
-    };
-    let text = raw.header.text(source);
-    let (header, fault) = lines::header(&text);
+    let written = Written::new(source, &raw.header);
+    let text = &written.text;
+    let (header, fault) = lines::header(text);
     let fault = fault.filter(|_| !raw.header.unclosed);
     let Some(mut header) = header else {
-        if let Some(fault) = fault {
-            report(reader, source, raw.header.range.start, fault);
-        }
+        reader.problems.add(fault.map(|fault| written.fault(fault)));
         return;
     };
-    let word = rules::exact(place(&header.kind, &raw.header));
+    let word = rules::exact(written.span(&header.kind));
     let Some(kind) = reader.kind(&word.text, &word.span) else { return };
     match fault {
         // If the name continues with characters that a name cannot contain, the whole word is
@@ -65,23 +90,23 @@ fn read_block(source: &Arc<Source>, raw: RawBlock, reader: &mut Reader<'_>) {
                     rules::quoted(rest)
                 ));
             }
-            report(reader, source, raw.header.range.start, fault);
+            reader.problems.push(written.fault(fault));
         }
         None => {}
     }
     let kind = kind.with_name(header.name.is_some());
-    let title = header.title.map(|range| unquote(&[range], &text, &raw.header, source, reader));
+    let title = header.title.map(|range| unquote(&[range], &written, reader));
     let mut comments = raw.header.comments.clone();
     comments.after = raw.after;
     let mut block = Block {
         kind: Text { text: kind.word.to_owned(), exact: word.text == kind.word, span: word.span },
-        name: header.name.map(|range| rules::exact(place(&range, &raw.header))),
+        name: header.name.map(|range| rules::exact(written.span(&range))),
         title,
         fields: Vec::new(),
         comments,
     };
     for item in &raw.fields {
-        if let Some((key, field)) = read_field(source, item, kind, reader) {
+        if let Some((key, field)) = read_field(&Written::new(source, item), kind, reader) {
             reader.field(kind, key, &mut block, field);
         }
     }
@@ -89,36 +114,32 @@ fn read_block(source: &Arc<Source>, raw: RawBlock, reader: &mut Reader<'_>) {
 }
 
 fn read_field(
-    source: &Arc<Source>,
-    item: &Item,
+    written: &Written<'_>,
     kind: &'static Kind,
     reader: &mut Reader<'_>,
 ) -> Option<(&'static Key, Field)> {
-    let text = item.text(source);
-    let start = item.range.start;
-    let places = match lines::words(&text) {
+    let text = written.text.as_str();
+    let places = match lines::words(text) {
         Ok(places) => places,
         Err(fault) => {
-            report(reader, source, start, fault);
+            reader.problems.push(written.fault(fault));
             return None;
         }
     };
     let words: Vec<&str> = places.iter().map(|range| &text[range.clone()]).collect();
     let (key, count) = match rules::key(kind, &words) {
         Some(found) => found,
-        None => {
-            let first = source.span(start + places.first()?.start..start + places.first()?.end);
-            reader.unknown_field(kind, &words, &first)?
-        }
+        None => reader.unknown_field(kind, &words, &written.span(places.first()?))?,
     };
     let head = places.first()?.start..places.get(count - 1)?.end;
     let mut value = head.end;
     value += blanks(&text[value..]);
     if text[value..].starts_with([':', '=']) {
-        reader.problems.push(error(
+        reader.problems.push(problem!(
             "unexpected-text",
-            format!("`{}` must be followed directly by its value", &text[head.clone()]),
-            &source.span(start + value..start + value + 1),
+            &written.span(&(value..value + 1)),
+            "`{}` must be followed directly by its value",
+            &text[head.clone()]
         ));
         value += 1;
         value += blanks(&text[value..]);
@@ -126,17 +147,13 @@ fn read_field(
     let key_text = Text {
         text: key.word.to_owned(),
         exact: key.word == &text[head.clone()],
-        span: source.span(start + head.start..start + head.end),
+        span: written.span(&head),
     };
     let value = match key.sort {
-        Sort::Phrase => Text {
-            text: text[value..].to_owned(),
-            span: source.span(start + value..item.range.end),
-            exact: true,
-        },
-        Sort::Text => read_prose(value, &text, item, source, key, reader),
+        Sort::Phrase => written.rest(value),
+        Sort::Text => read_prose(value, written, key, reader),
     };
-    Some((key, Field { key: key_text, value, comments: item.comments.clone() }))
+    Some((key, Field { key: key_text, value, comments: written.item.comments.clone() }))
 }
 
 fn blanks(text: &str) -> usize {
@@ -144,58 +161,36 @@ fn blanks(text: &str) -> usize {
 }
 
 /// The value of a text field: quoted pieces in a row.
-fn read_prose(
-    from: usize,
-    text: &str,
-    item: &Item,
-    source: &Arc<Source>,
-    key: &Key,
-    reader: &mut Reader<'_>,
-) -> Text {
-    let rest = &text[from..];
-    let at = source.span(item.range.start + from..item.range.end);
-    let bare = |text: &str| Text { text: text.to_owned(), span: at.clone(), exact: true };
+fn read_prose(from: usize, written: &Written<'_>, key: &Key, reader: &mut Reader<'_>) -> Text {
+    let at = written.rest(from);
+    let rest = at.text.as_str();
     if rest.is_empty() {
-        return bare("");
+        return at;
     }
     if !rest.starts_with('"') {
-        let help = || {
-            format!(
-                "{} {}",
-                key.word,
-                rules::quoted(&rest.split_whitespace().collect::<Vec<_>>().join(" "))
-            )
-        };
-        reader.problems.push(
-            error("missing-quotes", format!("the text of `{}` has no quotes", key.word), &at)
-                .help(lines::slip(rest).unwrap_or_else(help)),
-        );
-        return bare(rest);
+        let help = || format!("{} {}", key.word, rules::quoted(&normalised(rest)));
+        let problem = problem!("missing-quotes", &at, "the text of `{}` has no quotes", key.word);
+        reader.problems.push(problem.help(lines::slip(rest).unwrap_or_else(help)));
+        return at;
     }
     match lines::prose(rest) {
         Ok(pieces) => {
             let pieces: Vec<Range<usize>> =
                 pieces.into_iter().map(|piece| from + piece.start..from + piece.end).collect();
-            unquote(&pieces, text, item, source, reader)
+            unquote(&pieces, written, reader)
         }
-        Err(fault) => {
-            if !item.unclosed {
-                report(reader, source, item.range.start + from, fault);
+        Err(mut fault) => {
+            fault.at = from + fault.at.start..from + fault.at.end;
+            if !written.item.unclosed {
+                reader.problems.push(written.fault(fault));
             }
-            bare(rest.trim_matches('"'))
+            Text { text: rest.trim_matches('"').to_owned(), ..at }
         }
     }
 }
 
 /// The text without quotes and escapes; pieces are joined by a blank.
-fn unquote(
-    pieces: &[Range<usize>],
-    text: &str,
-    item: &Item,
-    source: &Arc<Source>,
-    reader: &mut Reader<'_>,
-) -> Text {
-    let start = item.range.start;
+fn unquote(pieces: &[Range<usize>], written: &Written<'_>, reader: &mut Reader<'_>) -> Text {
     let mut out = String::new();
     let mut plain = pieces.len() == 1;
     for (count, piece) in pieces.iter().enumerate() {
@@ -203,7 +198,7 @@ fn unquote(
             out.push(' ');
         }
         let inner = piece.start + 1..piece.end.saturating_sub(1).max(piece.start + 1);
-        let mut chars = text[inner.clone()].char_indices();
+        let mut chars = written.text[inner.clone()].char_indices();
         while let Some((at, c)) = chars.next() {
             if c != '\\' {
                 out.push(c);
@@ -215,15 +210,11 @@ fn unquote(
                 Some((_, c @ ('"' | '\\'))) => out.push(c),
                 other => {
                     let c = other.map(|(_, c)| c);
-                    let from = start + inner.start + at;
-                    reader.problems.push(
-                        error(
-                            "unknown-escape",
-                            "in quotes, a backslash must be followed by `\"`, `\\` or `n`",
-                            &source.span(from..from + 1 + c.map_or(0, char::len_utf8)),
-                        )
-                        .help("write a backslash as \\\\"),
-                    );
+                    let from = inner.start + at;
+                    let place = written.span(&(from..from + 1 + c.map_or(0, char::len_utf8)));
+                    let says = "in quotes, a backslash must be followed by `\"`, `\\` or `n`";
+                    let problem = error("unknown-escape", says, &place);
+                    reader.problems.push(problem.help("write a backslash as \\\\"));
                     out.push('\\');
                     out.extend(c);
                 }
@@ -237,15 +228,5 @@ fn unquote(
                 ..pieces.last().map_or(0, |piece| piece.end)
         }
     };
-    Text { text: out, span: source.span(start + whole.start..start + whole.end), exact: plain }
-}
-
-fn report(reader: &mut Reader<'_>, source: &Arc<Source>, offset: usize, fault: Fault) {
-    let mut problem = error(
-        "unexpected-text",
-        fault.says,
-        &source.span(offset + fault.at.start..offset + fault.at.end),
-    );
-    problem.help = fault.help;
-    reader.problems.push(problem);
+    Text { text: out, span: written.span(&whole), exact: plain }
 }

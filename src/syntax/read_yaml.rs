@@ -8,19 +8,14 @@ use super::layout::Quotes;
 use super::nesting;
 use super::remarks::Remarks;
 use super::rules::{self, Form, Reader};
-use crate::problem::{Problems, error};
+use crate::problem::{Problems, error, problem};
 use crate::source::{Source, Span};
 use crate::yaml::{self, Node, Value};
 
 /// Reads the YAML form, with the same problems as [`super::read_text`] reports for the text form.
 pub fn read_yaml(source: &Arc<Source>, problems: &mut Problems) -> Document {
     let earlier = problems.0.len();
-    let mut document = Document {
-        source: Arc::clone(source),
-        leading: Vec::new(),
-        blocks: Vec::new(),
-        trailing: Vec::new(),
-    };
+    let mut document = Document::empty(source);
     if let Some(root) = yaml::load_as_written(source, problems) {
         let mut reader =
             YamlReader { remarks: Remarks::new(source), reader: Reader::new(Form::Yaml, problems) };
@@ -57,8 +52,15 @@ impl YamlReader<'_> {
             let margin = nesting::block_at_margin(&key.text, node)
                 .filter(|_| rules::meant_kind(Form::Yaml, &key.text).is_none());
             if let Some(help) = margin {
-                let says = format!("`{}` is not a block of a protocol", key.text);
-                self.reader.problems.push(error("unknown-block", says, &key.span).help(help));
+                self.reader.problems.push(
+                    problem!(
+                        "unknown-block",
+                        &key.span,
+                        "`{}` is not a block of a protocol",
+                        key.text
+                    )
+                    .help(help),
+                );
                 self.remarks.pass(end);
                 continue;
             }
@@ -182,10 +184,10 @@ impl YamlReader<'_> {
         comments.before.extend(self.remarks.above());
         comments.put_beside(self.remarks.beside(node.span.end));
         if let Some(first) = found {
-            let says = format!("a block can have only one `{}`", key.text);
-            self.reader
-                .problems
-                .push(error("duplicate-field", says, key).also(&*first, "the first"));
+            self.reader.problems.push(
+                problem!("duplicate-field", key, "a block can have only one `{}`", key.text)
+                    .also(&*first, "the first"),
+            );
         } else if node.is_scalar() {
             *found = Some(text(node));
         } else {
@@ -202,8 +204,16 @@ impl YamlReader<'_> {
             let nested = nesting::too_deep(&key.text, node)
                 .or_else(|| nesting::block_among_fields(kind, &key.text, node, beside));
             if let Some(help) = nested {
-                let says = format!("a `{}` has no field `{}`", kind.word, key.text);
-                self.reader.problems.push(error("unknown-field", says, &key).help(help));
+                self.reader.problems.push(
+                    problem!(
+                        "unknown-field",
+                        &key,
+                        "a `{}` has no field `{}`",
+                        kind.word,
+                        key.text
+                    )
+                    .help(help),
+                );
                 return;
             }
         }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::document::{Block, Field, Text};
 use super::keys::{KINDS, Key, Kind};
 use super::lines;
-use crate::problem::{Problem, Problems, error, nearest};
+use crate::problem::{Problem, Problems, error, nearest, problem};
 use crate::source::Span;
 
 /// Largest number of words of a key.
@@ -79,8 +79,9 @@ impl<'a> Reader<'a> {
                 format!("`{word}` is a field of {owners}; fields are indented below {below}")
             }
         };
-        let says = format!("`{word}` is not a block of a protocol");
-        self.problems.push(error("unknown-block", says, at).help(help));
+        self.problems.push(
+            problem!("unknown-block", at, "`{word}` is not a block of a protocol").help(help),
+        );
         near
     }
 
@@ -152,8 +153,9 @@ impl<'a> Reader<'a> {
             let known: Vec<&str> = kind.keys.iter().map(|key| key.word).collect();
             format!("known here: {}", known.join(", "))
         };
-        let says = format!("a `{word}`{of} has no field `{written}`");
-        self.problems.push(error("unknown-field", says, at).help(help));
+        self.problems.push(
+            problem!("unknown-field", at, "a `{word}`{of} has no field `{written}`").help(help),
+        );
         near.filter(|_| of_twin.is_none())
     }
 
@@ -166,14 +168,22 @@ impl<'a> Reader<'a> {
             };
             let colon = if self.form == Form::Yaml { ":" } else { "" };
             let help = format!("for example: {}{colon} {example}", key.word);
-            let says = format!("`{}` has no value", key.word);
-            self.problems.push(error("missing-value", says, &field.key).help(help));
+            self.problems.push(
+                problem!("missing-value", &field.key, "`{}` has no value", key.word).help(help),
+            );
             return;
         }
         if let Some(first) = block.field(key.word).filter(|_| !key.many) {
-            let says = format!("a `{}` can have only one `{}`", kind.word, key.word);
-            self.problems
-                .push(error("duplicate-field", says, &field.key).also(&first.key, "the first"));
+            self.problems.push(
+                problem!(
+                    "duplicate-field",
+                    &field.key,
+                    "a `{}` can have only one `{}`",
+                    kind.word,
+                    key.word
+                )
+                .also(&first.key, "the first"),
+            );
             return;
         }
         block.fields.push(field);
@@ -189,13 +199,11 @@ impl<'a> Reader<'a> {
                     Form::Yaml if kind.single => "add an entry `name`".to_owned(),
                     Form::Yaml => "write its name as the key above its fields".to_owned(),
                 };
-                let says = format!("this `{word}` has no name");
-                Some(error("missing-name", says, &block.kind).help(help))
+                Some(problem!("missing-name", &block.kind, "this `{word}` has no name").help(help))
             }
             Some(name) if !kind.named => {
-                let says = format!("a `{word}` block has no name");
                 let help = format!("there is one `{word}` block in a protocol");
-                Some(error("unexpected-name", says, name).help(help))
+                Some(problem!("unexpected-name", name, "a `{word}` block has no name").help(help))
             }
             Some(name) if kind.has_families() && lines::is_family_name(&name.text) => None,
             Some(name) if !lines::is_name(&name.text) => {
@@ -241,7 +249,7 @@ pub fn bad_name(written: &Text) -> Problem {
         "use letters a to z, digits, `_`, `-` and `.`"
     };
     let help = lines::slip(name).unwrap_or_else(|| made_of.to_owned());
-    error("bad-name", format!("`{name}` cannot be a name"), written).help(help)
+    problem!("bad-name", written, "`{name}` cannot be a name").help(help)
 }
 
 /// The longest key that the first words form, and its number of words.

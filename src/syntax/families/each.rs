@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::{Places, place_called};
-use crate::problem::{Problems, error, nearest};
+use crate::problem::{Problems, error, nearest, problem};
 use crate::source::Spanned;
 use crate::syntax::document::Text;
 use crate::syntax::keys::EACH;
@@ -35,11 +35,12 @@ pub fn read(text: &Text, places: &Places, problems: &mut Problems) -> Option<Vec
         heads.push(head);
     }
     if heads.first().is_none_or(|head| head.at != first(&text.text)) {
-        let says = format!("`{EACH}` needs a variable, `in` and members");
         let help = format!(
             "write `{EACH}  part in magnitude, phase`, and `{{part}}` where a member is inserted"
         );
-        problems.push(error("syntax", says, text).help(help));
+        problems.push(
+            problem!("syntax", text, "`{EACH}` needs a variable, `in` and members").help(help),
+        );
         return None;
     }
     let ends = heads.iter().skip(1).map(|head| head.at).chain([text.text.len()]);
@@ -64,17 +65,12 @@ fn first(text: &str) -> usize {
 
 /// For each byte, whether it is inside quotes or parentheses.
 fn open_places(text: &str) -> Vec<bool> {
-    let (mut quotes, mut depth) = (Quotes::default(), 0_usize);
+    let mut quotes = Quotes::default();
     let mut open = Vec::with_capacity(text.len());
     for c in text.chars() {
-        let before = quotes.inside || depth > 0;
+        let before = quotes.open();
         quotes.pass(c);
-        match c {
-            '(' if !quotes.inside => depth += 1,
-            ')' if !quotes.inside => depth = depth.saturating_sub(1),
-            _ => {}
-        }
-        open.extend(std::iter::repeat_n(before || quotes.inside || depth > 0, c.len_utf8()));
+        open.extend(std::iter::repeat_n(before || quotes.open(), c.len_utf8()));
     }
     open
 }
@@ -133,7 +129,7 @@ fn group(
     if let [only] = items.as_slice()
         && only.is_empty()
     {
-        problems.push(error("no-members", format!("`{}` has no members", variables[0].value), &at).help("write members after `in`, separated by commas, or the name of a place for all its members"));
+        problems.push(problem!("no-members", &at, "`{}` has no members", variables[0].value).help("write members after `in`, separated by commas, or the name of a place for all its members"));
         return None;
     }
     let mut rows = Vec::new();
@@ -205,9 +201,15 @@ fn row(
             1 => "is one word".to_owned(),
             several => format!("are {several} words"),
         };
-        let says = format!("{count} variables belong together, but here {here}");
         let help = "write words that belong together in parentheses: `(Y, kN), (az, m/s^2)`";
-        problems.push(error("member-count", says, &text.place(item)).help(help));
+        problems.push(
+            problem!(
+                "member-count",
+                &text.place(item),
+                "{count} variables belong together, but here {here}"
+            )
+            .help(help),
+        );
         return None;
     }
     words.into_iter().map(|part| word(text, part, false, problems)).collect()
@@ -271,10 +273,11 @@ fn of_place(word: &Word, places: &Places, problems: &mut Problems) -> Option<Vec
     }
     // A word similar to the name of a place is probably a misspelling of it.
     if let Some(near) = nearest(&name, known()) {
-        let says = format!("no place is called `{}`", word.value);
         let help =
             format!("did you mean `{near}`? Write a single member that is not a place in quotes");
-        problems.push(error("unknown-place", says, &**word).help(help));
+        problems.push(
+            problem!("unknown-place", &**word, "no place is called `{}`", word.value).help(help),
+        );
         return None;
     }
     Some(vec![vec![Arc::clone(word)]])

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::each::Word;
-use crate::problem::{Problem, Problems, error, nearest};
+use crate::problem::{Problem, Problems, error, nearest, problem};
 use crate::source::{Filled, Member, Piece, Span, Spanned};
 use crate::syntax::document::Text;
 
@@ -150,7 +150,7 @@ fn stands_for_nothing(inside: Option<&str>, variables: &[Spanned<String>], at: &
     };
     let names = || variables.iter().map(|variable| variable.value.as_str());
     let word = inside.trim();
-    let problem = error("unknown-variable", format!("`{{{inside}}}` is not a variable"), at);
+    let problem = problem!("unknown-variable", at, "`{{{inside}}}` is not a variable");
     match names().find(|name| *name == word).or_else(|| nearest(word, names())) {
         Some(near) => problem.help(format!("did you mean `{{{near}}}`?")),
         None => problem.help(format!(

@@ -16,7 +16,7 @@ use super::from_pest;
 use super::keys::{self, EACH, Kind, Sort};
 use super::layout::Quotes;
 use super::lines;
-use crate::problem::{Problem, Problems, error, nearest};
+use crate::problem::{Problem, Problems, error, nearest, problem};
 use crate::source::{Filled, Member, Span, Spanned};
 use each::{Group, Word};
 use fill::{Template, Use};
@@ -135,9 +135,14 @@ impl Writer<'_> {
             Some(near) => format!("the parent has `{near}`: to override it, use that name"),
             None => format!("add a line `{EACH}  variable in one, another`"),
         };
-        let says =
-            format!("`{name}` has braces like the name of a family, but the block has no `{EACH}`");
-        self.problems.push(error("unknown-variable", says, block).help(help));
+        self.problems.push(
+            problem!(
+                "unknown-variable",
+                block,
+                "`{name}` has braces like the name of a family, but the block has no `{EACH}`"
+            )
+            .help(help),
+        );
         self.sound = false;
     }
 
@@ -162,12 +167,19 @@ impl Writer<'_> {
             });
             let Some((at, _)) = brace else { continue };
             let end = text[at..].find('}').map_or(at + 1, |end| at + end + 1);
-            let says = format!("`{}` is not a variable: the block has no `{EACH}`", &text[at..end]);
             let help = format!(
                 "add a line `{EACH}  variable in one, another`, and `{{variable}}` to the name"
             );
             let place = field.value.place(at..end);
-            self.problems.push(error("unknown-variable", says, &place).help(help));
+            self.problems.push(
+                problem!(
+                    "unknown-variable",
+                    &place,
+                    "`{}` is not a variable: the block has no `{EACH}`",
+                    &text[at..end]
+                )
+                .help(help),
+            );
             self.sound = false;
         }
     }
@@ -178,10 +190,10 @@ impl Writer<'_> {
         if let Some((first, other)) = self.seen.get(&key)
             && (of_family || *other)
         {
-            let says = format!("there are two blocks `{} {}`", key.0, key.1);
             let help =
                 "write what differs between members with a variable, or override it in a variant";
-            let problem = error("duplicate-name", says, &block);
+            let problem =
+                problem!("duplicate-name", &block, "there are two blocks `{} {}`", key.0, key.1);
             self.problems.push(problem.also(first, "the first").help(help));
             return;
         }
@@ -209,11 +221,13 @@ impl Writer<'_> {
         for (index, variable) in variables.iter().enumerate() {
             if only.is_none() && !parts.uses(index) {
                 let name = &variable.value;
-                let says = format!("the variable `{name}` is not used");
                 let help = format!(
                     "write `{{{name}}}` where its members are inserted, or remove the variable"
                 );
-                self.problems.push(error("unused-variable", says, variable).help(help));
+                self.problems.push(
+                    problem!("unused-variable", variable, "the variable `{name}` is not used")
+                        .help(help),
+                );
             }
         }
         let mut names: IndexMap<String, Vec<Word>> = IndexMap::new();
@@ -249,17 +263,23 @@ impl Writer<'_> {
                 && let Some(text) = &filled.name
             {
                 let help = "use letters a to z, digits, `_`, `-` and `.`";
-                let says = format!("`{name}` cannot be a name");
-                self.problems.push(error("bad-name", says, text).help(help));
+                self.problems
+                    .push(problem!("bad-name", text, "`{name}` cannot be a name").help(help));
             }
             self.add(filled, true);
             names.insert(name, words);
         }
         if names.is_empty() {
-            let says =
-                format!("no member of the family `{}` of the parent is left", block.name_text());
             let help = format!("give it members with `{EACH}`");
-            self.problems.push(error("no-members", says, block).help(help));
+            self.problems.push(
+                problem!(
+                    "no-members",
+                    block,
+                    "no member of the family `{}` of the parent is left",
+                    block.name_text()
+                )
+                .help(help),
+            );
         }
         let members: Vec<String> = names.into_keys().collect();
         let same = |family: &&mut Known| {
@@ -291,14 +311,19 @@ impl Writer<'_> {
         for variable in groups.iter().flat_map(|group| &group.variables) {
             let name = &variable.value;
             if let Some(first) = seen.iter().find(|known| known.value == *name) {
-                let says = format!("`{name}` is declared twice as a variable of this family");
-                let problem = error("duplicate-name", says, variable);
+                let problem = problem!(
+                    "duplicate-name",
+                    variable,
+                    "`{name}` is declared twice as a variable of this family"
+                );
                 self.problems.push(problem.also(*first, "the first"));
                 sound = false;
             } else if self.places.contains_key(name) {
-                let says = format!("`{name}` is both a place and a variable");
                 let help = format!("give the variable another name: `{EACH}  x in {name}`");
-                self.problems.push(error("name-clash", says, variable).help(help));
+                self.problems.push(
+                    problem!("name-clash", variable, "`{name}` is both a place and a variable")
+                        .help(help),
+                );
                 sound = false;
             }
             seen.push(variable);
@@ -306,12 +331,16 @@ impl Writer<'_> {
         let count =
             groups.iter().fold(1_usize, |count, group| count.saturating_mul(group.rows.len()));
         if count > MOST_MEMBERS {
-            let says = format!(
-                "the family `{}` has {count} members; there can be at most {MOST_MEMBERS}",
-                block.name_text()
-            );
             let at = each.first().map_or(block.span(), |field| &field.value.span);
-            self.problems.push(error("too-large", says, at).help("split it or use fewer members"));
+            self.problems.push(
+                problem!(
+                    "too-large",
+                    at,
+                    "the family `{}` has {count} members; there can be at most {MOST_MEMBERS}",
+                    block.name_text()
+                )
+                .help("split it or use fewer members"),
+            );
             sound = false;
         }
         sound.then_some(groups)
@@ -424,11 +453,16 @@ fn same_name(
         .enumerate()
         .find(|(index, _)| first[*index].span != second[*index].span && !differs.contains(index));
     if let Some((index, _)) = repeated.filter(|_| differs.is_empty()) {
-        let says = format!("the member `{}` is given twice", second[index].value);
-        return error("duplicate-name", says, &*second[index]).also(&*first[index], "the first");
+        return problem!(
+            "duplicate-name",
+            &*second[index],
+            "the member `{}` is given twice",
+            second[index].value
+        )
+        .also(&*first[index], "the first");
     }
-    let says = format!("two members of the family are called `{name}`");
-    let problem = error("duplicate-name", says, block);
+    let problem =
+        problem!("duplicate-name", block, "two members of the family are called `{name}`");
     match differs.iter().find(|index| !written.uses(**index)) {
         Some(index) => problem.help(format!("write `{{{}}}` in the name", variables[*index].value)),
         None => problem.help(

@@ -5,12 +5,12 @@ use std::ops::Range;
 use pest::error::{Error, ErrorVariant, InputLocation};
 
 use super::{Rule, is_keyword};
-use crate::problem::{Problem, error};
+use crate::problem::{Problem, error, problem};
 use crate::syntax::document::Text;
 use crate::units::Unit;
 
 pub(super) fn twice(what: &str, text: &Text, range: Range<usize>) -> Problem {
-    error("syntax", format!("a limit can have only one `{what}`"), &text.place(range))
+    problem!("syntax", &text.place(range), "a limit can have only one `{what}`")
         .help("write two limits, or join the conditions with `and`")
 }
 
@@ -106,7 +106,7 @@ fn decimal_comma(at: usize, text: &Text) -> Option<Problem> {
     let end = (comma + 1..bytes.len()).take_while(|&at| digit(at)).last()? + 1;
     let number = &text.text[start..end];
     Some(
-        error("decimal-comma", format!("`{number}` has a decimal comma"), &text.place(start..end))
+        problem!("decimal-comma", &text.place(start..end), "`{number}` has a decimal comma")
             .help(format!("write numbers with a point: `{}`", number.replace(',', "."))),
     )
 }
@@ -127,10 +127,11 @@ fn unknown_unit(before: &str, found: &str, at: usize, text: &Text) -> Option<Pro
         return None;
     }
     let unknown = Unit::parse(found).err()?;
-    let problem = error(
+    let problem = problem!(
         "unknown-unit",
-        format!("`{}` is not a known unit", unknown.word),
         &text.place(at..at + found.len()),
+        "`{}` is not a known unit",
+        unknown.word
     );
     Some(match unknown.near.filter(|_| !is_name(found)) {
         Some(near) => problem.meant(near),
