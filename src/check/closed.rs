@@ -4,7 +4,6 @@
 use std::collections::BTreeSet;
 
 use super::functions::is_signal_function;
-use super::names::Assignment;
 use super::prelude::*;
 use crate::catalog::{MetricEntry, Reducer, Statistic};
 

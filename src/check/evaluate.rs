@@ -1,5 +1,7 @@
 //! Evaluates a checked expression, given the values of its names.
 
+use std::ops::RangeInclusive;
+
 use super::possible::possible;
 use super::prelude::*;
 use super::values::{Values, leaf};
@@ -115,6 +117,11 @@ pub fn arithmetic(operator: Operator, a: f64, b: f64) -> f64 {
         Operator::Divide => a / b,
         _ => f64::NAN,
     }
+}
+
+/// Whether a value is a whole number within bounds.
+pub fn is_whole(value: f64, bounds: RangeInclusive<f64>) -> bool {
+    value.fract() == 0.0 && bounds.contains(&value)
 }
 
 /// The source text of an expression, with normalised blanks.

@@ -4,10 +4,10 @@
 use std::collections::BTreeSet;
 
 use super::compared::Compared;
+use super::evaluate::is_whole;
 use super::expressions::whole;
-use super::names::{Assignment, bare_word};
+use super::names::bare_word;
 use super::prelude::*;
-use super::quantities::is_whole;
 use super::scope::Reduce;
 use super::steps::{after, show_number};
 use super::wordings::{fits, item_phrase};

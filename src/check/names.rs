@@ -68,9 +68,6 @@ pub struct Names {
     pub failed: BTreeSet<String>,
 }
 
-/// The position chosen of each place.
-pub type Assignment = IndexMap<String, String>;
-
 impl Checker<'_> {
     /// Gathers the names of all blocks.
     pub fn gather_names(&mut self) {

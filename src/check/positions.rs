@@ -3,7 +3,7 @@
 
 use indexmap::IndexMap;
 
-use super::names::{Assignment, Place};
+use super::names::Place;
 use super::prelude::*;
 use crate::syntax::phrase::{Alias, Pick};
 

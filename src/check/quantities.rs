@@ -1,9 +1,9 @@
 //! Checks quantities: their fields together, and their positions.
 
-use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use super::conditions::impossible;
+use super::evaluate::is_whole;
 use super::expressions::whole;
 use super::prelude::*;
 use super::steps::after;
@@ -289,11 +289,6 @@ impl Checker<'_> {
             "`{key}` must be a whole number, this is {words}{value}"
         ))
     }
-}
-
-/// Whether a value is a whole number within bounds.
-pub fn is_whole(value: f64, bounds: RangeInclusive<f64>) -> bool {
-    value.fract() == 0.0 && bounds.contains(&value)
 }
 
 /// Whether there may be sections in which both positions are evaluated.

@@ -1,7 +1,8 @@
 //! The names that an expression can use, by where it stands.
 
-use super::names::Assignment;
-use super::prelude::*;
+use super::plan::{Assignment, Expr, Input, InputSide, Kind, Origin, Taken, Taking, Type};
+use crate::source::Span;
+use crate::units::Dimension;
 
 /// The names that an expression can use, and the values taken from signals that it contains.
 #[derive(Debug, Default)]

@@ -1,7 +1,7 @@
 //! Checks what only expressions over samples have: channels at positions, filters inside
 //! expressions, operations along the axis.
 
-use super::names::{Assignment, Signal};
+use super::names::Signal;
 use super::prelude::*;
 use super::steps::after;
 

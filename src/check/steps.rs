@@ -1,7 +1,7 @@
 //! Checks filter chains: their steps, and the order of these.
 
+use super::evaluate::is_whole;
 use super::prelude::*;
-use super::quantities::is_whole;
 use super::wordings::Filled;
 use crate::catalog::{Part, STEPS, StepEntry, StepKind};
 use crate::metrics::filter::{Band, Cutoff, Phase};

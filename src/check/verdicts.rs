@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
+use super::evaluate::is_whole;
 use super::prelude::*;
-use super::quantities::is_whole;
 use crate::syntax::phrase::{OverVerdicts, Verdict as Written};
 
 /// Words of the verdict without a name.

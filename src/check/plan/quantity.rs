@@ -10,6 +10,9 @@ use crate::result;
 use crate::source::{Span, Spanned};
 use crate::units::{Dimension, Unit};
 
+/// The position chosen of each place.
+pub type Assignment = IndexMap<String, String>;
+
 /// A number that an expression takes from signals.
 #[derive(Clone, Debug)]
 pub struct Input {
@@ -121,7 +124,7 @@ pub struct Position {
     pub name: String,
     pub signal: Expr,
     /// Each place with its member, such as `wheelset` and `1`.
-    pub places: IndexMap<String, String>,
+    pub places: Assignment,
     /// The condition on the sections in which it is evaluated; `None` for all.
     pub only: Option<Expr>,
 }
