@@ -157,15 +157,9 @@ impl<'a> Group<'a> {
                 named("record", member.row.record.as_ref().map_or("1".into(), ToString::to_string))
             }
             Key::Place(place) => {
-                let places = self
-                    .positions()
-                    .get(member.row.position)
-                    .map_or(&[][..], |position| &position.places);
-                let of = places
-                    .iter()
-                    .find(|(known, _)| known == place)
-                    .map_or(String::new(), |(_, member)| member.clone());
-                named(&place.replace('_', " "), of)
+                let position = self.positions().get(member.row.position);
+                let of = position.and_then(|position| position.places.get(place));
+                named(&place.replace('_', " "), of.cloned().unwrap_or_default())
             }
             Key::Column(index) => {
                 let datum = &self.plan.columns[*index];
