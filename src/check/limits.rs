@@ -2,11 +2,11 @@
 
 use super::evaluate::{number, words};
 use super::groups::Grouped;
-use super::{overlap, printed};
 use super::plan::Scope as LimitScope;
 use super::prelude::*;
 use super::resolve::LIMITS_NOT_VALUES;
 use super::values::Values;
+use super::{overlap, printed};
 use crate::catalog::Best;
 use crate::metrics::rounded;
 use crate::result::Reason;

@@ -178,7 +178,7 @@ impl Checker<'_> {
         rules.margin = block.field("margin").and_then(|field| self.along_axis(field, false));
         rules.keep = block.field("keep").and_then(|field| self.keep(field));
         if let Some(field) = block.field("percentiles") {
-            let methods = Method::ALL.map(|method| (method.name(), method));
+            let methods = Method::NAMES.map(|(method, name)| (name, method));
             let method =
                 self.one_of(field, &methods, |word| format!("`{word}` is not a percentile rule"));
             rules.percentiles = method.unwrap_or(Method::Linear);
