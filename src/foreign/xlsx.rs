@@ -164,28 +164,7 @@ fn table(
         return Ok(Err(pairs(name, &rows)));
     };
     let (before, data) = rows.split_at(start);
-    let named = |number: usize, what: &str| {
-        let row = before.iter().find(|row| row.0 as usize + 1 == number);
-        row.ok_or_else(|| {
-            let says =
-                format!("row {number} of sheet `{name}` of `{}`, said to have the {what}, is empty or among the numbers", input.shown);
-            Problem::error("header-line", says).help(format!("the numbers begin in row {}", data[0].0 + 1))
-        })
-    };
-    let are_units = |row: &&&Row| {
-        let texts: Vec<String> = row.1.iter().map(|(_, cell)| cell.words()).collect();
-        most_are_units(texts.iter().map(String::as_str))
-    };
-    let full: Vec<&Row> = before.iter().filter(|row| 2 * row.1.len() >= widest).collect();
-    let units = match options.units_line {
-        Some(0) => None,
-        Some(number) => Some(named(number, "units")?),
-        None => full.iter().skip(1).rev().find(are_units).copied(),
-    };
-    let names = match options.names_line {
-        Some(number) => Some(named(number, "names")?),
-        None => full.iter().rev().find(|row| units.is_none_or(|units| row.0 < units.0)).copied(),
-    };
+    let Headers { names, units } = headers(input, name, before, data[0].0, widest)?;
     let heading = |row: Option<&Row>, column: u32| {
         let (_, cell) = row?.1.iter().find(|(other, _)| *other == column)?;
         filled(&cell.words())
@@ -236,6 +215,49 @@ fn table(
         });
     }
     Ok(Ok(table))
+}
+
+/// The rows with the names and the units of the columns, where there are any.
+struct Headers<'a> {
+    names: Option<&'a Row>,
+    units: Option<&'a Row>,
+}
+
+/// The headers among the rows before the first row of numbers; a row of them is at least half as
+/// wide as the widest of numbers.
+///
+/// # Errors
+/// `header-line`.
+fn headers<'a>(
+    input: &Input<'_>,
+    name: &str,
+    before: &'a [Row],
+    first: u32,
+    widest: usize,
+) -> Result<Headers<'a>, Problem> {
+    let named = |number: usize, what: &str| {
+        let row = before.iter().find(|row| row.0 as usize + 1 == number);
+        row.ok_or_else(|| {
+            let says =
+                format!("row {number} of sheet `{name}` of `{}`, said to have the {what}, is empty or among the numbers", input.shown);
+            Problem::error("header-line", says).help(format!("the numbers begin in row {}", first + 1))
+        })
+    };
+    let are_units = |row: &&&Row| {
+        let texts: Vec<String> = row.1.iter().map(|(_, cell)| cell.words()).collect();
+        most_are_units(texts.iter().map(String::as_str))
+    };
+    let full: Vec<&Row> = before.iter().filter(|row| 2 * row.1.len() >= widest).collect();
+    let units = match input.options.units_line {
+        Some(0) => None,
+        Some(number) => Some(named(number, "units")?),
+        None => full.iter().skip(1).rev().find(are_units).copied(),
+    };
+    let names = match input.options.names_line {
+        Some(number) => Some(named(number, "names")?),
+        None => full.iter().rev().find(|row| units.is_none_or(|units| row.0 < units.0)).copied(),
+    };
+    Ok(Headers { names, units })
 }
 
 /// The values of a column, and whether they are times; `None` for texts.

@@ -6,11 +6,13 @@
 
 use super::G;
 use super::contact::{Contact, Forces, Motion, WHEELS, Wheels};
+use super::input::Offset;
+pub use super::input::{Hints, Input};
 use super::masses::mobility;
 use super::parameters::Vehicle;
 use super::profile::Profile;
 use super::state::{BOGIE, CAR, PHI, PSI, State, WHEELSET, Z};
-use super::track::{Hint, Irregularity, Line, Track};
+use super::track::{Line, Track};
 
 /// Exponent of the elastic slip element.
 const SHARPNESS: i32 = 8;
@@ -29,38 +31,6 @@ pub struct Equations<'a> {
     mobility: [f64; State::BODIES],
     bending_omega: f64,
 }
-
-/// The track frame of one body relative to that of another.
-#[derive(Clone, Copy, Debug, Default)]
-struct Offset {
-    e: f64,
-    phi: f64,
-    theta: f64,
-}
-
-impl Offset {
-    /// Frame p at `sp` relative to frame q at `sq`.
-    fn new(p: &Line, sp: f64, q: &Line, sq: f64) -> Self {
-        Self { e: p.y - q.y - q.theta * (sp - sq), phi: p.cant - q.cant, theta: p.theta - q.theta }
-    }
-}
-
-/// The track under all bodies at one time.
-#[derive(Clone, Debug, Default)]
-pub struct Input {
-    car: Line,
-    bogie: [Line; 2],
-    bogie_offset: [Offset; 2],
-    wheelset: [Line; 4],
-    wheelset_offset: [Offset; 4],
-    irregularity: [Irregularity; 4],
-    /// Deviation of the radius under the wheels and its rate, in m and m/s.
-    roundness: [Wheels; 2],
-}
-
-/// Intervals of the last track lookups.
-#[derive(Clone, Debug, Default)]
-pub struct Hints([Hint; 7]);
 
 /// Wheel-rail forces and accelerations, for the outputs.
 #[derive(Clone, Copy, Debug, Default)]
@@ -304,11 +274,17 @@ impl<'a> Equations<'a> {
             load[b + PSI] -= mz;
         }
         if v.bending_frequency > 0.0 {
-            let (q, q_rate, omega) = (state.bending[0], state.bending[1], self.bending_omega);
-            rates.bending[0] = q_rate;
-            rates.bending[1] = v.bending_shape * bending / v.bending_mass
-                - omega * (2.0 * v.bending_damping * q_rate + omega * q);
+            rates.bending = self.bending(state, bending);
         }
+    }
+
+    /// Rates of the bending mode of the car body, under the forces of both bogies.
+    #[inline(always)]
+    fn bending(&self, state: &State, force: f64) -> [f64; 2] {
+        let v = self.vehicle;
+        let ([q, q_rate], omega) = (state.bending, self.bending_omega);
+        let bent = omega * (2.0 * v.bending_damping * q_rate + omega * q);
+        [q_rate, v.bending_shape * force / v.bending_mass - bent]
     }
 
     /// Between bogie frames and wheelsets; two axle boxes per wheelset.

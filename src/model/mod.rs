@@ -14,6 +14,7 @@
 
 mod contact;
 pub mod equations;
+mod input;
 pub mod integrate;
 mod masses;
 mod parameters;

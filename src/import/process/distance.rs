@@ -3,7 +3,7 @@
 
 use super::clock::Clock;
 use super::recording::{Recording, Source};
-use crate::data::record::{Wanted, read_record};
+use crate::data::record::{Record, Wanted, read_record};
 use crate::import::mapping::{ChannelMap, Distance, Match, Stated};
 use crate::metrics::synchronise::{self, Estimate, Pair, Search};
 use crate::metrics::{along, resample, statistics};
@@ -193,25 +193,28 @@ pub fn matched(
             "the correlation of {names} with `{shown}` is {correlation:.2} at best; at least {LEAST_CORRELATION} is needed"
         ));
     }
-    // Of several channels, one may be reversed.
     let moved: Vec<f64> = distance.iter().map(|at| at + shift).collect();
-    let reach = moved[0]..=moved[moved.len() - 1];
-    let inside: Vec<f64> = at.iter().copied().filter(|at| reach.contains(at)).collect();
-    for (map, (column, channel)) in
-        wanted.channels.iter().zip(track.columns[1..].iter().zip(&recorded))
-    {
-        let of_track = resample::interpolate(at, &column.values, &inside).unwrap_or_default();
-        let of_record = resample::interpolate(&moved, channel, &inside).unwrap_or_default();
-        if statistics::correlation(&of_track, &of_record)
-            .is_some_and(|correlation| correlation < 0.0)
-        {
-            return opposite(map);
-        }
+    if let Some(number) = reversed(&track, &moved, &recorded) {
+        return opposite(&wanted.channels[number]);
     }
     let says = format!(
         "distance moved by {shift:+.2} m to match {names} with the track file (95 % interval {low:+.2} to {high:+.2} m, correlation {correlation:.3})"
     );
     Ok((shift, says))
+}
+
+/// Of several channels, the number of one that has the sign opposite to the track, at the distances
+/// of the record.
+fn reversed(track: &Record, distance: &[f64], channels: &[Vec<f64>]) -> Option<usize> {
+    let (at, columns) = track.columns.split_first()?;
+    let reach = distance[0]..=distance[distance.len() - 1];
+    let inside: Vec<f64> = at.values.iter().copied().filter(|at| reach.contains(at)).collect();
+    columns.iter().zip(channels).position(|(column, channel)| {
+        let of_track =
+            resample::interpolate(&at.values, &column.values, &inside).unwrap_or_default();
+        let of_record = resample::interpolate(distance, channel, &inside).unwrap_or_default();
+        statistics::correlation(&of_track, &of_record).is_some_and(|found| found < 0.0)
+    })
 }
 
 #[cfg(test)]

@@ -39,7 +39,6 @@ pub fn finish(
     if rows.is_some() {
         warnings.extend(times::warning(recording, &times));
     }
-    let time_of = |row: usize| short(times[row]);
     let axis = |name: &str, dimension: Dimension, values: &Vec<f64>| Column {
         name: name.into(),
         unit: Unit::si(dimension),
@@ -48,31 +47,14 @@ pub fn finish(
     let mut columns = vec![axis("time", Dimension::TIME, &times)];
     columns.extend(at.as_ref().map(|values| axis("distance", Dimension::LENGTH, values)));
     columns.extend(channels);
-    let mut faults = Vec::new();
-    for column in &columns {
-        let Some((row, missing)) = column.values.missing()? else { continue };
-        let says = format!(
-            "`{}` has no value in {missing} of {} rows, first at {} s",
-            column.name,
-            column.values.len(),
-            time_of(row)
-        );
-        let mut maps = side.channels.maps().unwrap_or_default().iter();
-        let map = maps.find(|map| map.name.value == column.name);
-        let place = map.map_or(&side.span, |map| &map.name.span);
-        faults.push(
-            recording.fault("not-finite", &says, place).help(
-                "repair the record, leave the channel out, or cut the record: `margin: 60 m`",
-            ),
-        );
-    }
+    let mut faults = missing(recording, &columns, &times)?;
     if let Some(values) = at.filter(|_| faults.is_empty()) {
         let (first, last) =
             (values.first().copied().unwrap_or(0.0), values.last().copied().unwrap_or(0.0));
         if let Some(row) = (1..values.len()).find(|&row| values[row] <= values[row - 1]) {
             let says = format!(
                 "the distance does not increase at {} s: {} m after {} m",
-                time_of(row),
+                short(times[row]),
                 short(values[row]),
                 short(values[row - 1])
             );
@@ -93,6 +75,31 @@ pub fn finish(
     }
     let section = recording.section.to_string();
     Ok(Made { kind: side.kind, section, columns, steps, warnings })
+}
+
+/// Columns without a value in some of their rows.
+fn missing(
+    recording: &Recording<'_>,
+    columns: &[Column],
+    times: &[f64],
+) -> Result<Vec<Problem>, Problem> {
+    let side = recording.side;
+    let mut faults = Vec::new();
+    for column in columns {
+        let Some((row, missing)) = column.values.missing()? else { continue };
+        let says = format!(
+            "`{}` has no value in {missing} of {} rows, first at {} s",
+            column.name,
+            column.values.len(),
+            short(times[row])
+        );
+        let mut maps = side.channels.maps().unwrap_or_default().iter();
+        let map = maps.find(|map| map.name.value == column.name);
+        let place = map.map_or(&side.span, |map| &map.name.span);
+        let help = "repair the record, leave the channel out, or cut the record: `margin: 60 m`";
+        faults.push(recording.fault("not-finite", &says, place).help(help));
+    }
+    Ok(faults)
 }
 
 fn outside(recording: &Recording<'_>, (start, end): (f64, f64), values: &[f64]) -> Problem {

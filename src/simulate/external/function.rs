@@ -6,8 +6,8 @@ use super::super::made::{first, lacks, unit_in, wanted};
 use super::cache::Key;
 use super::python::{Columns, Workers};
 use super::{External, covers};
-use crate::data::RecordKind;
 use crate::data::record::{Wanted, listed_headings, read_headings, read_record};
+use crate::data::{Heading, RecordKind};
 use crate::effects::{Action, Catalogue, Channel, Signals};
 use crate::problem::{Problem, error};
 use crate::simulate::{Section, Task};
@@ -149,25 +149,8 @@ impl External<'_> {
         made: Columns,
     ) -> Result<(Signals, Vec<u8>), Problem> {
         let shown = format!("the answer of {}", self.program.name);
-        let wrong = |says: String| Problem::error("simulator-output", says);
         let known = self.headings(section);
-        let mut columns: Vec<(String, Unit, Vec<f64>)> = Vec::new();
-        for (written, values) in made {
-            let heading = listed_headings(&written, &shown)
-                .ok()
-                .filter(|found| found.len() == 1)
-                .and_then(|mut found| found.pop());
-            let name = heading.as_ref().map_or(written.clone(), |heading| heading.name.clone());
-            let own = unit_in(&known, &name);
-            let unit = match heading.filter(|heading| heading.unit.is_some()) {
-                Some(heading) => heading.unit(own.as_ref().map(|unit| unit.dimension))?,
-                None => own.unwrap_or_else(Unit::one),
-            };
-            if columns.iter().any(|(known, ..)| *known == name) {
-                return Err(wrong(format!("{shown} has `{name}` twice")));
-            }
-            columns.push((name, unit, values));
-        }
+        let mut columns = columns(&known, &shown, made)?;
         // Axes that the function does not give are those of its inputs.
         for (axis, dimension) in [(DISTANCE, Dimension::LENGTH), (TIME, Dimension::TIME)] {
             if let (false, Some((_, values))) = (
@@ -231,13 +214,44 @@ impl External<'_> {
         Ok((Signals { axis, over_time, rate: (time.len() - 1) as f64 / span, channels }, text))
     }
 
-    fn input_headings(&self, section: &Section) -> Vec<crate::data::Heading> {
+    fn input_headings(&self, section: &Section) -> Vec<Heading> {
         let place = self.campaign.record_place(self.input_kind(), &section.cell);
         place
             .ok()
             .and_then(|place| read_headings(&place.path, &place.inside).ok())
             .unwrap_or_default()
     }
+}
+
+fn wrong(says: String) -> Problem {
+    Problem::error("simulator-output", says)
+}
+
+/// The columns of an answer, each with its name and unit; without a unit, in that of the campaign's
+/// simulation, whose headings are `known`.
+fn columns(
+    known: &[Heading],
+    shown: &str,
+    made: Columns,
+) -> Result<Vec<(String, Unit, Vec<f64>)>, Problem> {
+    let mut columns: Vec<(String, Unit, Vec<f64>)> = Vec::new();
+    for (written, values) in made {
+        let heading = listed_headings(&written, shown)
+            .ok()
+            .filter(|found| found.len() == 1)
+            .and_then(|mut found| found.pop());
+        let name = heading.as_ref().map_or(written.clone(), |heading| heading.name.clone());
+        let own = unit_in(known, &name);
+        let unit = match heading.filter(|heading| heading.unit.is_some()) {
+            Some(heading) => heading.unit(own.as_ref().map(|unit| unit.dimension))?,
+            None => own.unwrap_or_else(Unit::one),
+        };
+        if columns.iter().any(|(known, ..)| *known == name) {
+            return Err(wrong(format!("{shown} has `{name}` twice")));
+        }
+        columns.push((name, unit, values));
+    }
+    Ok(columns)
 }
 
 /// The SI value of a number with its unit: `54.5 kN`.
