@@ -12,7 +12,7 @@ use crate::result::Result;
 use crate::{Asked, opened, work};
 use fishplate::problem::{Problem, Problems};
 use fishplate::run::{Settings, Shard};
-use fishplate::values::{self, Part};
+use fishplate::values::{self, ReduceJob};
 
 /// The bytes of a file of values.
 #[pyfunction]
@@ -33,7 +33,7 @@ pub fn reduce<'py>(
         let shard = shard.map_err(|says| problems.push(Problem::error("shard", says))).ok();
         let opened = opened(campaigns, protocol.as_ref(), &set, &mut problems);
         let made = shard.zip(opened).and_then(|(shard, opened)| {
-            let found = values::reduce(&opened, Part { shard, plots }, &|_| {});
+            let found = values::reduce(&opened, ReduceJob { shard, plots }, &|_| {});
             let made = found.and_then(|found| Ok(values::write(&opened.compiled.plan, &found)?));
             made.map_err(|told| problems.add(told.0)).ok()
         });

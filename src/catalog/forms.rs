@@ -4,7 +4,7 @@ use crate::units::Dimension;
 
 /// A part of a wording.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Part {
+pub enum FormPart {
     /// A fixed word.
     Word(&'static str),
     /// A number of the given dimension.
@@ -19,7 +19,7 @@ pub enum Part {
     Signal(&'static str),
 }
 
-impl Part {
+impl FormPart {
     /// The word, where it is a fixed one.
     pub fn word(&self) -> Option<&'static str> {
         if let Self::Word(word) = self { Some(word) } else { None }
@@ -47,7 +47,7 @@ pub struct NumberOption {
 /// A wording.
 #[derive(Clone, Copy, Debug)]
 pub struct Form {
-    pub head: &'static [Part],
+    pub head: &'static [FormPart],
     /// Options of a word and a number, in either order: `order 4`, `50 points`.
     pub numbers: &'static [NumberOption],
     pub choices: &'static [Choice],
@@ -65,12 +65,12 @@ impl Form {
             .head
             .iter()
             .map(|part| match part {
-                Part::Word(word) => (*word).to_string(),
-                Part::Number(name, dimension) => format!("<{name}: {}>", dimension.in_words()),
-                Part::Extent(name) => format!("<{name}: a length or a time>"),
-                Part::Frequency(name) => format!("<{name}: a frequency>"),
-                Part::FrequencyOrZero(name) => format!("<{name}: a frequency or 0 Hz>"),
-                Part::Signal(name) => format!("<{name}: a signal>"),
+                FormPart::Word(word) => (*word).to_string(),
+                FormPart::Number(name, dimension) => format!("<{name}: {}>", dimension.in_words()),
+                FormPart::Extent(name) => format!("<{name}: a length or a time>"),
+                FormPart::Frequency(name) => format!("<{name}: a frequency>"),
+                FormPart::FrequencyOrZero(name) => format!("<{name}: a frequency or 0 Hz>"),
+                FormPart::Signal(name) => format!("<{name}: a signal>"),
             })
             .collect();
         parts.join(" ")

@@ -23,7 +23,7 @@ pub struct Function {
     pub run: fn(&[f64]) -> f64,
 }
 
-const fn one(
+const fn function(
     name: &'static str,
     signature: Signature,
     about: &'static str,
@@ -34,41 +34,44 @@ const fn one(
 
 /// The number of arguments is checked before: two for [`Signature::PairSame`], one for all others.
 pub const FUNCTIONS: &[Function] = &[
-    one(
+    function(
         "larger",
         Signature::PairSame,
         "The larger of two values; also written `larger of a, b`.",
         |a| a[0].max(a[1]),
     ),
-    one(
+    function(
         "smaller",
         Signature::PairSame,
         "The smaller of two values; also written `smaller of a, b`.",
         |a| a[0].min(a[1]),
     ),
-    one("magnitude", Signature::Same, "The value without its sign; also written `|a|`.", |a| {
-        a[0].abs()
-    }),
-    one(
+    function(
+        "magnitude",
+        Signature::Same,
+        "The value without its sign; also written `|a|`.",
+        |a| a[0].abs(),
+    ),
+    function(
         "sign",
         Signature::ToPlain,
         "1 for zero and positive values, -1 for negative values.",
         |a| if a[0] < 0.0 { -1.0 } else { 1.0 },
     ),
-    one("sqrt", Signature::Root, "Square root.", |a| a[0].sqrt()),
-    one("hypot", Signature::PairSame, "Square root of the sum of two squares.", |a| {
+    function("sqrt", Signature::Root, "Square root.", |a| a[0].sqrt()),
+    function("hypot", Signature::PairSame, "Square root of the sum of two squares.", |a| {
         a[0].hypot(a[1])
     }),
-    one("exp", Signature::Plain, "Exponential function.", |a| a[0].exp()),
-    one("ln", Signature::Plain, "Natural logarithm.", |a| a[0].ln()),
-    one("log10", Signature::Plain, "Decimal logarithm.", |a| a[0].log10()),
-    one("sin", Signature::Plain, "Sine of an angle.", |a| a[0].sin()),
-    one("cos", Signature::Plain, "Cosine of an angle.", |a| a[0].cos()),
-    one("tan", Signature::Plain, "Tangent of an angle.", |a| a[0].tan()),
-    one("asin", Signature::Plain, "Inverse sine, an angle.", |a| a[0].asin()),
-    one("acos", Signature::Plain, "Inverse cosine, an angle.", |a| a[0].acos()),
-    one("atan", Signature::Plain, "Inverse tangent, an angle.", |a| a[0].atan()),
-    one("floor", Signature::Plain, "The largest whole number that is not greater.", |a| {
+    function("exp", Signature::Plain, "Exponential function.", |a| a[0].exp()),
+    function("ln", Signature::Plain, "Natural logarithm.", |a| a[0].ln()),
+    function("log10", Signature::Plain, "Decimal logarithm.", |a| a[0].log10()),
+    function("sin", Signature::Plain, "Sine of an angle.", |a| a[0].sin()),
+    function("cos", Signature::Plain, "Cosine of an angle.", |a| a[0].cos()),
+    function("tan", Signature::Plain, "Tangent of an angle.", |a| a[0].tan()),
+    function("asin", Signature::Plain, "Inverse sine, an angle.", |a| a[0].asin()),
+    function("acos", Signature::Plain, "Inverse cosine, an angle.", |a| a[0].acos()),
+    function("atan", Signature::Plain, "Inverse tangent, an angle.", |a| a[0].atan()),
+    function("floor", Signature::Plain, "The largest whole number that is not greater.", |a| {
         a[0].floor()
     }),
 ];

@@ -12,7 +12,7 @@ mod steps;
 mod two_signals;
 
 pub use entries::{Entry, entries};
-pub use forms::{Choice, Form, NumberOption, Part};
+pub use forms::{Choice, Form, FormPart, NumberOption};
 pub use functions::{FUNCTIONS, Function, SIGNAL_FUNCTIONS, Signature};
 pub use reducers::{REDUCERS, Reducer, ReducerEntry, STATISTICS, Statistic, StatisticEntry};
 pub use steps::{STEPS, StepEntry, StepKind};

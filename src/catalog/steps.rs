@@ -1,6 +1,6 @@
 //! Steps of a filter chain.
 
-use super::forms::Part::{self, Extent, Frequency, FrequencyOrZero, Number, Word};
+use super::forms::FormPart::{self, Extent, Frequency, FrequencyOrZero, Number, Word};
 use super::forms::{Choice, Form, NumberOption};
 use crate::units::Dimension;
 
@@ -52,7 +52,7 @@ const WINDOW_CHOICES: &[Choice] = &[
     },
 ];
 
-const fn butterworth(kind: StepKind, head: &'static [Part], about: &'static str) -> StepEntry {
+const fn butterworth(kind: StepKind, head: &'static [FormPart], about: &'static str) -> StepEntry {
     StepEntry {
         kind,
         form: Form { head, numbers: BUTTERWORTH_NUMBERS, choices: BUTTERWORTH_CHOICES },
@@ -74,7 +74,7 @@ const TRANSFER_CHOICES: &[Choice] = &[
     },
 ];
 
-const fn transfer(head: &'static [Part], about: &'static str) -> StepEntry {
+const fn transfer(head: &'static [FormPart], about: &'static str) -> StepEntry {
     StepEntry {
         kind: StepKind::TransferFunction,
         form: Form { head, numbers: GAIN, choices: TRANSFER_CHOICES },
@@ -82,15 +82,15 @@ const fn transfer(head: &'static [Part], about: &'static str) -> StepEntry {
     }
 }
 
-const ABOVE_ZERO: Part = Frequency("frequency");
-const FROM_ZERO: Part = FrequencyOrZero("frequency");
-const QUALITY: Part = Number("quality", Dimension::ONE);
+const ABOVE_ZERO: FormPart = Frequency("frequency");
+const FROM_ZERO: FormPart = FrequencyOrZero("frequency");
+const QUALITY: FormPart = Number("quality", Dimension::ONE);
 
-const fn window(kind: StepKind, head: &'static [Part], about: &'static str) -> StepEntry {
+const fn window(kind: StepKind, head: &'static [FormPart], about: &'static str) -> StepEntry {
     StepEntry { kind, form: Form { head, numbers: &[], choices: WINDOW_CHOICES }, about }
 }
 
-const fn bare(kind: StepKind, head: &'static [Part], about: &'static str) -> StepEntry {
+const fn bare(kind: StepKind, head: &'static [FormPart], about: &'static str) -> StepEntry {
     StepEntry { kind, form: Form { head, numbers: &[], choices: &[] }, about }
 }
 

@@ -1,7 +1,7 @@
 //! Metrics: one number from the simulated and the measured signal of a section. The measured signal
 //! is the reference.
 
-use super::forms::Part::{self, Frequency, Signal, Word};
+use super::forms::FormPart::{self, Frequency, Signal, Word};
 use super::forms::{Form, NumberOption};
 use crate::metrics::{coherence, hysteresis, pair};
 use crate::units::Dimension;
@@ -122,22 +122,22 @@ impl MetricEntry {
     /// `coherence`.
     pub fn function_name(&self) -> String {
         let head = self.form.head;
-        let slot = head.iter().position(|part| !matches!(part, Part::Word(_)));
+        let slot = head.iter().position(|part| !matches!(part, FormPart::Word(_)));
         // The last word before a slot is a preposition: `over`, `from`.
         let words = &head[..slot.map_or(head.len(), |slot| slot.saturating_sub(1))];
-        words.iter().filter_map(Part::word).collect::<Vec<_>>().join("_").replace('-', "_")
+        words.iter().filter_map(FormPart::word).collect::<Vec<_>>().join("_").replace('-', "_")
     }
 
     /// The call in expressions: `coherence(<low>, <high>)`, `matching_probability` with or without
     /// `(<points>)`.
     pub fn call_in_words(&self) -> String {
         let slots = self.form.head.iter().filter_map(|part| match part {
-            Part::Word(_) => None,
-            Part::Number(name, _)
-            | Part::Extent(name)
-            | Part::Frequency(name)
-            | Part::FrequencyOrZero(name)
-            | Part::Signal(name) => Some(format!("<{name}>")),
+            FormPart::Word(_) => None,
+            FormPart::Number(name, _)
+            | FormPart::Extent(name)
+            | FormPart::Frequency(name)
+            | FormPart::FrequencyOrZero(name)
+            | FormPart::Signal(name) => Some(format!("<{name}>")),
         });
         let slots: Vec<String> = slots
             .chain(self.form.numbers.iter().map(|option| format!("<{}>", option.name)))
@@ -147,13 +147,13 @@ impl MetricEntry {
     }
 }
 
-const fn form(head: &'static [Part]) -> Form {
+const fn form(head: &'static [FormPart]) -> Form {
     Form { head, numbers: &[], choices: &[] }
 }
 
 /// A plain number from the samples at common points.
 const fn entry(
-    head: &'static [Part],
+    head: &'static [FormPart],
     best: Best,
     about: &'static str,
     source: &'static str,
@@ -174,7 +174,7 @@ const fn entry(
 
 /// Of the loops of the signal over another one.
 const fn of_loops(
-    head: &'static [Part],
+    head: &'static [FormPart],
     about: &'static str,
     run: fn(&Pair<'_>) -> Result<f64, String>,
 ) -> MetricEntry {

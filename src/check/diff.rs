@@ -143,7 +143,7 @@ fn fields(old: &Block, new: &Block, found: &mut Vec<Change>) {
     if old.kind.text == "protocol" {
         // Name, title and scope always differ and are not rules.
         for key in ["axis", "time", "edition"] {
-            one(old, key, old.field(key), new.field(key), found);
+            compare_field(old, key, old.field(key), new.field(key), found);
         }
         return;
     }
@@ -158,7 +158,7 @@ fn fields(old: &Block, new: &Block, found: &mut Vec<Change>) {
         if key.many {
             many(new, &olds, &news, found);
         } else {
-            one(new, key.word, olds.first().copied(), news.first().copied(), found);
+            compare_field(new, key.word, olds.first().copied(), news.first().copied(), found);
         }
     }
 }
@@ -182,10 +182,10 @@ fn many(block: &Block, olds: &[&Field], news: &[&Field], found: &mut Vec<Change>
                 !limit || new.key.text == "limit" && statistic(old) == statistic(new)
             })
         });
-        one(block, &rule(new), partner.map(|at| left.remove(at)), Some(new), found);
+        compare_field(block, &rule(new), partner.map(|at| left.remove(at)), Some(new), found);
     }
     for old in left {
-        one(block, &rule(old), Some(old), None, found);
+        compare_field(block, &rule(old), Some(old), None, found);
     }
 }
 
@@ -203,7 +203,7 @@ fn statistic(field: &Field) -> String {
         .map_or_else(first, |limit| limit.statistic.node)
 }
 
-fn one(
+fn compare_field(
     block: &Block,
     rule: &str,
     old: Option<&Field>,

@@ -16,7 +16,7 @@ pub fn evaluate(expr: &Expr, values: &dyn Values) -> Result<Scalar, Reason> {
     match exactly(expr, values) {
         // The other operands cannot decide a leaf without a value.
         Err(reason) if matches!(expr.kind, Kind::Binary(..) | Kind::Not(_) | Kind::Cases(..)) => {
-            possible(expr, values).one().ok_or(reason)
+            possible(expr, values).only_value().ok_or(reason)
         }
         found => found,
     }

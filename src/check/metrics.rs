@@ -11,7 +11,7 @@ use super::prelude::*;
 use super::scope::Reduce;
 use super::steps::{after, show_number};
 use super::wordings::{fits, item_phrase};
-use crate::catalog::{Asked, Form, METRICS, Metric, MetricEntry, Part, Reducer};
+use crate::catalog::{Asked, Form, FormPart, METRICS, Metric, MetricEntry, Reducer};
 use crate::syntax::phrase::{Item, Step as WrittenStep};
 
 /// Smallest number of points of a distribution: one point has no scatter.
@@ -231,7 +231,7 @@ impl Checker<'_> {
         step: &WrittenStep,
         span: &Span,
     ) -> Option<(Metric, Option<Phrase>)> {
-        let slot = entry.form.head.iter().position(|part| matches!(part, Part::Signal(_)));
+        let slot = entry.form.head.iter().position(|part| matches!(part, FormPart::Signal(_)));
         let over = match slot {
             None => None,
             Some(slot) => Some(item_phrase(step.parts.first()?.get(slot)?)),
@@ -292,7 +292,11 @@ impl Checker<'_> {
             .head
             .iter()
             .map(|part| {
-                if let Part::Word(fixed) = part { Some(word(fixed)) } else { rest.next().map(item) }
+                if let FormPart::Word(fixed) = part {
+                    Some(word(fixed))
+                } else {
+                    rest.next().map(item)
+                }
             })
             .collect();
         let options = entry
@@ -324,7 +328,7 @@ impl Checker<'_> {
         span: &Origin,
         scope: &mut Scope,
     ) -> Option<Expr> {
-        if entry.form.head.iter().any(|part| !matches!(part, Part::Word(_))) {
+        if entry.form.head.iter().any(|part| !matches!(part, FormPart::Word(_))) {
             return self.refuse(
                 problem!("arguments", span, "`{}` needs arguments", entry.function_name())
                     .help(format!("write `{}`", entry.call_in_words())),
@@ -483,5 +487,5 @@ fn forms() -> impl Iterator<Item = &'static Form> + Clone {
 
 /// The words of a wording before its first slot: `theil inequality`, `coherence from`.
 fn leading_words(entry: &MetricEntry) -> String {
-    entry.form.head.iter().map_while(Part::word).collect::<Vec<_>>().join(" ")
+    entry.form.head.iter().map_while(FormPart::word).collect::<Vec<_>>().join(" ")
 }

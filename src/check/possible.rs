@@ -46,7 +46,7 @@ impl Possible {
     }
 
     /// The only possible value, if there is just one.
-    pub fn one(&self) -> Option<Scalar> {
+    pub fn only_value(&self) -> Option<Scalar> {
         match self {
             Self::Number(low, high) if low == high && low.is_finite() => Some(Scalar::Number(*low)),
             Self::Flag { can_hold, can_fail } if can_hold != can_fail => {
@@ -231,7 +231,7 @@ fn call(function: &Function, arguments: &[(f64, f64)]) -> Possible {
 
 /// Whether two values can be equal, and whether they can differ.
 fn equal(left: &Possible, right: &Possible) -> (bool, bool) {
-    if let (Some(left), Some(right)) = (left.one(), right.one()) {
+    if let (Some(left), Some(right)) = (left.only_value(), right.only_value()) {
         return (left == right, left != right);
     }
     let can_be = match (left, right) {
@@ -282,7 +282,7 @@ mod tests {
                 &test(Operator::GreaterEqual, number(length), Box::new(cases.clone())),
                 &Nothing,
             )
-            .one()
+            .only_value()
         };
         assert_eq!(longer(500.0), Some(Scalar::Flag(true)));
         assert_eq!(longer(99.0), Some(Scalar::Flag(false)));
@@ -299,7 +299,7 @@ mod tests {
             (Operator::Or, open(), open(), None),
         ] {
             assert_eq!(
-                possible(&test(operator, left, right), &Nothing).one(),
+                possible(&test(operator, left, right), &Nothing).only_value(),
                 one.map(Scalar::Flag)
             );
         }

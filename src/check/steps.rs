@@ -3,7 +3,7 @@
 use super::evaluate::is_whole;
 use super::prelude::*;
 use super::wordings::Filled;
-use crate::catalog::{Part, STEPS, StepEntry, StepKind};
+use crate::catalog::{FormPart, STEPS, StepEntry, StepKind};
 use crate::metrics::filter::{Band, Cutoff, Phase};
 use crate::metrics::window::Ends;
 use crate::syntax::phrase::{Item, Step as WrittenStep};
@@ -163,9 +163,9 @@ impl Checker<'_> {
         }
         if let [part] = written.parts.as_slice()
             && let [item @ At { node: Item::Word(word), .. }] = part.as_slice()
-            && !STEPS
-                .iter()
-                .any(|entry| entry.form.head == [Part::Word("magnitude")] && word == "magnitude")
+            && !STEPS.iter().any(|entry| {
+                entry.form.head == [FormPart::Word("magnitude")] && word == "magnitude"
+            })
         {
             return self.filter_named(word, &item.place());
         }
@@ -195,7 +195,7 @@ impl Checker<'_> {
         let mut next = 0;
         for part in entry.form.head {
             match part {
-                Part::Word(word) => words.push((*word).to_string()),
+                FormPart::Word(word) => words.push((*word).to_string()),
                 _ => {
                     let (value, dimension, _) = filled.numbers.get(next)?;
                     words.push(show_number(*value, *dimension));

@@ -3,7 +3,7 @@
 use super::prelude::*;
 use super::steps::phase;
 use super::wordings::Filled;
-use crate::catalog::{Part, StepEntry};
+use crate::catalog::{FormPart, StepEntry};
 use crate::metrics::filter::{Roots, TransferFunction, Warping};
 
 impl Checker<'_> {
@@ -22,12 +22,12 @@ impl Checker<'_> {
         let (mut which, mut two) = (0, false);
         for part in entry.form.head {
             match part {
-                Part::Word(word @ ("pole" | "poles" | "zero" | "zeros")) => {
+                FormPart::Word(word @ ("pole" | "poles" | "zero" | "zeros")) => {
                     which = usize::from(word.starts_with("zero"));
                     two = word.ends_with('s');
                 }
-                Part::Word(_) => {}
-                Part::Number(name, _) => {
+                FormPart::Word(_) => {}
+                FormPart::Number(name, _) => {
                     let (quality, _, place) = numbers.next()?;
                     self.positive(name, *quality, place)?;
                     found[which] = Some(Roots::Two {

@@ -1,7 +1,7 @@
 //! Checks wordings of the registry, of steps and metrics: their words, slots and options.
 
 use super::prelude::*;
-use crate::catalog::{Form, METRICS, Part};
+use crate::catalog::{Form, FormPart, METRICS};
 use crate::problem::nearest;
 use crate::syntax::phrase::{Item, Step as Written};
 
@@ -106,17 +106,17 @@ impl Checker<'_> {
         };
         let items = step.parts.first()?;
         for (part, item) in form.head.iter().zip(items) {
-            if matches!(part, Part::Word(_) | Part::Signal(_)) {
+            if matches!(part, FormPart::Word(_) | FormPart::Signal(_)) {
                 continue;
             }
             let place = item.place();
             let (value, found) = self.constant_phrase(&item_phrase(item))?;
             match part {
-                Part::Word(_) | Part::Signal(_) => {}
-                Part::Number(name, dimension) => {
+                FormPart::Word(_) | FormPart::Signal(_) => {}
+                FormPart::Number(name, dimension) => {
                     self.suits(name, found == *dimension, &dimension.in_words(), found, &place)?;
                 }
-                Part::Extent(name) => {
+                FormPart::Extent(name) => {
                     let extent = matches!(found, Dimension::LENGTH | Dimension::TIME);
                     self.suits(name, extent, "a length or a time", found, &place)?;
                     self.positive(name, value, &place)?;
@@ -129,10 +129,10 @@ impl Checker<'_> {
                         ));
                     }
                 }
-                Part::Frequency(name) | Part::FrequencyOrZero(name) => {
+                FormPart::Frequency(name) | FormPart::FrequencyOrZero(name) => {
                     let frequency = matches!(found, Dimension::FREQUENCY | Dimension::PER_LENGTH);
                     self.suits(name, frequency, "a frequency", found, &place)?;
-                    if !matches!(part, Part::FrequencyOrZero(_)) || value != 0.0 {
+                    if !matches!(part, FormPart::FrequencyOrZero(_)) || value != 0.0 {
                         self.positive(name, value, &place)?;
                     }
                 }
@@ -235,8 +235,8 @@ impl Checker<'_> {
 pub fn fits(form: &Form, items: &[At<Item>]) -> bool {
     form.head.len() == items.len()
         && form.head.iter().zip(items).all(|(part, item)| match (part, &item.node) {
-            (Part::Word(word), Item::Word(found)) => word == found,
-            (Part::Word(_), Item::Value(_)) => false,
+            (FormPart::Word(word), Item::Word(found)) => word == found,
+            (FormPart::Word(_), Item::Value(_)) => false,
             _ => true,
         })
 }

@@ -71,7 +71,7 @@ impl Blinded {
         // In parallel, since one diagnosis does not use all cores all the time.
         let one = |(at, folder): (usize, &PathBuf)| {
             console.say(&format!("{} of {}: {}", at + 1, campaigns.len(), folder.display()));
-            self.one(folder, &catalogue, &out, &diagnosed, console)
+            self.diagnose_folder(folder, &catalogue, &out, &diagnosed, console)
         };
         let cases: Result<Vec<Case>, Problem> =
             campaigns.par_iter().enumerate().with_max_len(1).map(one).collect();
@@ -98,7 +98,7 @@ impl Blinded {
     }
 
     /// The diagnosis is written and closed before the truth is opened.
-    fn one(
+    fn diagnose_folder(
         &self,
         folder: &Path,
         catalogue: &Catalogue,

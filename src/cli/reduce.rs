@@ -4,7 +4,7 @@
 use super::kit::*;
 use super::report::Report;
 use crate::run::{SectionValues, Shard};
-use crate::values::{self, Joined, Part, Values};
+use crate::values::{self, Joined, ReduceJob, Values};
 
 #[derive(Debug, Args)]
 pub struct Reduce {
@@ -60,7 +60,7 @@ impl Reduce {
             problems.push(Problem::warning("values-name", says).help("name it `values.parquet`"));
         }
         let opened = console.sound(opened, &problems)?;
-        let part = Part { shard: self.shard.unwrap_or(Shard::WHOLE), plots: !self.no_plots };
+        let part = ReduceJob { shard: self.shard.unwrap_or(Shard::WHOLE), plots: !self.no_plots };
         let steps = part.shard.range(opened.campaigns().sections()).len();
         let values =
             console.with_progress(steps, |progress| values::reduce(&opened, part, progress))?;

@@ -92,7 +92,9 @@ impl Simulate {
         let steps = steps(self.integrator, &self.step)?;
         match (&self.campaign, &self.vehicle) {
             (Some(campaign), _) => self.whole(campaign, (&catalogue, &effects), steps, console),
-            (None, Some(vehicle)) => self.one(vehicle, (&catalogue, &effects), steps, console),
+            (None, Some(vehicle)) => {
+                self.of_vehicle(vehicle, (&catalogue, &effects), steps, console)
+            }
             (None, None) => Ok(Exit::Wrong),
         }
     }
@@ -185,7 +187,7 @@ impl Simulate {
     }
 
     /// Simulates one vehicle on one track.
-    fn one(
+    fn of_vehicle(
         &self,
         vehicle: &Path,
         (catalogue, effects): (&Catalogue, &[Applied]),

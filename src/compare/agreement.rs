@@ -2,13 +2,13 @@
 
 use indexmap::IndexSet;
 
-use super::found::Found;
+use super::found::CampaignComparison;
 use crate::metrics::rank::spearman;
 use crate::result::Reason;
 use crate::result::comparison::{Agreement, Cell, Score};
 
 /// Every pair of protocols, then every pair of metrics of each protocol.
-pub fn agreement(names: &[&str], found: &[Found]) -> Vec<Agreement> {
+pub fn agreement(names: &[&str], found: &[CampaignComparison]) -> Vec<Agreement> {
     let scores: Vec<&Score> = found.iter().flat_map(|found| &found.scores).collect();
     let of = |protocol: &str, metric: Option<&str>| -> Vec<&Score> {
         scores
@@ -91,7 +91,7 @@ fn meets(score: &Score) -> bool {
 }
 
 /// Campaigns by verdict: holds, does not hold, not assessable.
-fn verdicts(found: &[Found], a: usize, b: usize) -> [[usize; 3]; 3] {
+fn verdicts(found: &[CampaignComparison], a: usize, b: usize) -> [[usize; 3]; 3] {
     let place = |cell: &Cell| cell.holds.map_or(2, |holds| usize::from(!holds));
     let mut counts = [[0; 3]; 3];
     for found in found {

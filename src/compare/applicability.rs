@@ -1,7 +1,7 @@
 //! What a metric can be applied to, found by trying: one quantity, one section, doubled and
 //! exchanged records.
 
-use super::found::{Base, Found};
+use super::found::{Base, CampaignComparison};
 use super::metric;
 use crate::check::plan::Plan;
 use crate::result::comparison::{Applicability, Tried};
@@ -84,7 +84,7 @@ fn numbers(plan: &Plan, judged: &Judged, at: usize) -> Vec<(String, bool)> {
     let quantity = &judged.quantities[at];
     let statistics = quantity.statistics.iter().filter(|statistic| statistic.value.is_some());
     let mut found: Vec<(String, bool)> =
-        statistics.map(|statistic| (metric::of(plan, at, statistic), true)).collect();
+        statistics.map(|statistic| (metric::metric_of(plan, at, statistic), true)).collect();
     if quantity.statistics.is_empty() && !quantity.values.is_empty() {
         found.push((metric::name(&plan.quantities[at], None), false));
     }
@@ -147,7 +147,7 @@ fn symmetric(pairs: &[(&PairValue, &PairValue)]) -> Option<bool> {
 
 /// For each protocol the first campaign on which it has a verdict, else the first on which it can
 /// be evaluated.
-pub fn put_together(found: &[Found]) -> Vec<Applicability> {
+pub fn put_together(found: &[CampaignComparison]) -> Vec<Applicability> {
     let protocols = found.first().map_or(0, |found| found.judgements.len());
     let of_protocol = |at: usize| {
         let assessable = found.iter().find(|found| found.judgements[at].cell.holds.is_some());

@@ -4,7 +4,7 @@ use indexmap::IndexMap;
 use rayon::prelude::*;
 
 use super::applicability;
-use super::found::{Base, Found, Judgement, Moved};
+use super::found::{Base, CampaignComparison, Judgement, Moved};
 use super::metric;
 use super::sensitivity;
 use super::subject::WithProtocols;
@@ -41,7 +41,7 @@ pub fn found(
     trials: &[Trial],
     settings: &Settings,
     progress: Progress<'_>,
-) -> Found {
+) -> CampaignComparison {
     let protocols = compiled.protocols.iter().map(|compiled| (compiled, true));
     let changed = compiled.changed.iter().flatten().map(|compiled| (compiled, false));
     let rules: Vec<Rules<'_>> = protocols
@@ -69,7 +69,7 @@ pub fn found(
         let label = (name.as_str(), names[0]);
         judgement(label, Base::new(label, compiled, evaluated).as_ref().map_err(|told| *told))
     };
-    let mut found = Found {
+    let mut found = CampaignComparison {
         campaign: name.clone(),
         files: files(campaign, all.as_recorded.iter().flatten()),
         judgements: judgements.collect(),
@@ -188,7 +188,7 @@ impl Base<'_> {
             found.extend(quantity.statistics.iter().map(|statistic| Ratio {
                 campaign: self.campaign.into(),
                 protocol: self.protocol.into(),
-                metric: metric::of(self.plan, at, statistic),
+                metric: metric::metric_of(self.plan, at, statistic),
                 quantity: quantity.id.clone(),
                 symbol: quantity.symbol.clone(),
                 estimate: statistic.title.clone(),

@@ -8,7 +8,7 @@ use crate::run::{Counts, Evaluated, Judged};
 
 /// What all protocols made of a campaign.
 #[derive(Debug)]
-pub struct Found {
+pub struct CampaignComparison {
     pub campaign: String,
     pub files: Vec<FileHash>,
     /// One for each protocol.

@@ -37,7 +37,7 @@ fn named(quantity: &Quantity, title: Option<&str>, each: bool) -> String {
 }
 
 /// The metric of a result.
-pub fn of(plan: &Plan, quantity: usize, statistic: &StatisticResult) -> String {
+pub fn metric_of(plan: &Plan, quantity: usize, statistic: &StatisticResult) -> String {
     plan.quantities.get(quantity).map_or_else(String::new, |quantity| {
         named(quantity, Some(&statistic.title), statistic.name == StatisticName::Each)
     })
@@ -78,7 +78,7 @@ pub fn numbers(plan: &Plan, judged: &Judged) -> Vec<Number> {
             let Some(ratio) = signed(statistic) else { continue };
             let limit = format!("{} {} {}", quantity.id, statistic.title, statistic.scope);
             found.push(Number {
-                metric: of(plan, at, statistic),
+                metric: metric_of(plan, at, statistic),
                 limited: true,
                 of: limit,
                 value: ratio,

@@ -162,7 +162,7 @@ impl Prepared {
         let Self { protocols, campaigns, changes, unrelated, settings } = self;
         let trials = trials(&settings.sizes);
         let names: Vec<&str> = protocols.iter().map(|subject| subject.name.as_str()).collect();
-        let found: Vec<found::Found> = campaigns
+        let found: Vec<found::CampaignComparison> = campaigns
             .iter()
             .map(|opened| campaign::found(opened, &names, &trials, settings, progress))
             .collect();

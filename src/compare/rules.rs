@@ -1,6 +1,6 @@
 //! What differs between two protocols, and what each difference does to the verdict by itself.
 
-use super::found::{Found, Judgement};
+use super::found::{CampaignComparison, Judgement};
 use super::subject::{Subject, WithProtocols};
 use crate::check::diff::{self, Change};
 use crate::result::Reason;
@@ -26,7 +26,7 @@ pub fn related(before: &Subject, after: &Subject) -> bool {
 pub fn differences(
     changes: &[Change],
     campaigns: &[WithProtocols],
-    found: &[Found],
+    found: &[CampaignComparison],
 ) -> Vec<Difference> {
     let mut all = Vec::new();
     for (at, change) in changes.iter().enumerate() {
@@ -78,7 +78,11 @@ fn words(before: &Option<String>, after: &Option<String>) -> String {
     }
 }
 
-fn difference(found: &Found, after: Option<&Judgement>, reason: Option<Reason>) -> Difference {
+fn difference(
+    found: &CampaignComparison,
+    after: Option<&Judgement>,
+    reason: Option<Reason>,
+) -> Difference {
     let before = found.judgements.first();
     Difference {
         rule: String::new(),

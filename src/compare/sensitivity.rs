@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use indexmap::IndexSet;
 
-use super::found::{Base, Found, Moved, OfMetric};
+use super::found::{Base, CampaignComparison, Moved, OfMetric};
 use super::metric::{self, Number};
 use super::{KINDS, Settings};
 use crate::metrics::disturb::stream;
@@ -111,7 +111,7 @@ fn drawn<'a>(sections: &[&'a str], draw: usize, out: usize) -> BTreeSet<&'a str>
 }
 
 /// One curve for each metric and disturbance, over all campaigns.
-pub fn curves(names: &[&str], found: &[Found], sizes: &[f64]) -> Vec<Sensitivity> {
+pub fn curves(names: &[&str], found: &[CampaignComparison], sizes: &[f64]) -> Vec<Sensitivity> {
     let mut all = Vec::new();
     if sizes.is_empty() {
         return all;
@@ -139,10 +139,10 @@ pub fn curves(names: &[&str], found: &[Found], sizes: &[f64]) -> Vec<Sensitivity
     all
 }
 
-fn curve<'a, I: Iterator<Item = (&'a Found, &'a Moved)>>(
+fn curve<'a, I: Iterator<Item = (&'a CampaignComparison, &'a Moved)>>(
     (protocol, metric, limited): (&str, &str, bool),
     of: &dyn Fn(usize) -> I,
-    found: &[Found],
+    found: &[CampaignComparison],
     sizes: &[f64],
 ) -> Sensitivity {
     let own = |moved: &'a Moved| {

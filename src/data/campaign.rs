@@ -20,13 +20,13 @@ pub use layout::POINT_KEY;
 pub use members::{RecordKind, WhichRecord};
 pub use opening::ReadFile;
 pub use records::OFFSET;
-pub use runs::{OnDrift, Part, RUN_COLUMN, RUNS, Run, RunFact};
+pub use runs::{OnDrift, RUN_COLUMN, RUNS, Run, RunFact, RunStretch};
 
 pub use super::folder::Memory;
 use super::folder::{Folder, check_file_name};
 use super::identification::{Report, Stated};
 use super::origin::Origin;
-use super::place::Place;
+use super::place::CampaignPath;
 use super::table::{Cell, Table};
 use crate::disk;
 use crate::problem::{Problem, Problems, error, problem};
@@ -272,7 +272,7 @@ impl Campaign {
     ///
     /// # Errors
     /// As [`read_text`](super::text::read_text).
-    pub fn read_text(&self, place: &Place) -> Result<Arc<Source>, Problem> {
+    pub fn read_text(&self, place: &CampaignPath) -> Result<Arc<Source>, Problem> {
         self.folder.read_text(place).map(|(source, ..)| source)
     }
 
@@ -285,7 +285,7 @@ impl Campaign {
     ///
     /// # Errors
     /// `path-outside`, `path-invalid`.
-    pub fn place(&self, written: &Spanned<String>) -> Result<Place, Problem> {
+    pub fn place(&self, written: &Spanned<String>) -> Result<CampaignPath, Problem> {
         self.folder.place(&written.value, &written.span)
     }
 }

@@ -1,6 +1,6 @@
 //! A copy of a campaign in which each section has records of its own, cut from the runs.
 
-use super::campaign::{CAMPAIGN_FILE, Part, RUN_COLUMN, RUNS, Run};
+use super::campaign::{CAMPAIGN_FILE, RUN_COLUMN, RUNS, Run, RunStretch};
 use super::hash::sha256;
 use super::origin::{ORIGIN_FILE, ORIGIN_KEY};
 use super::record::{Column, Format, Record, Wanted};
@@ -94,7 +94,7 @@ fn stretch(
     let (axis, start, end) = extent(table, name)?;
     let moved = campaign.offset_of(kind, name)?.map_or(0.0, |(_, offset)| offset);
     // As much as the evaluation of a section in a run reads.
-    let Part { from, to, .. } = Part::around(axis, (start, end), None);
+    let RunStretch { from, to, .. } = RunStretch::around(axis, (start, end), None);
     let wanted = Wanted::all(&source.headings()?);
     let record = source.stretch(&wanted, axis, from - moved..to - moved, run.known(kind))?;
     Ok((record, source.inside().to_string()))

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
-use super::place::Place;
+use super::place::CampaignPath;
 use super::record::Frame;
 use super::text::{read_any, read_small, text_of, unreadable};
 use crate::disk;
@@ -75,7 +75,7 @@ impl Folder {
     /// # Errors
     /// As [`read_text`](super::text::read_text); `file-missing` with the nearest name in that
     /// folder.
-    pub fn read_text(&self, place: &Place) -> Result<(Arc<Source>, String, u64), Problem> {
+    pub fn read_text(&self, place: &CampaignPath) -> Result<(Arc<Source>, String, u64), Problem> {
         let bytes = self.bytes(place, read_small)?;
         let (source, hash) = text_of(&bytes, &place.shown)?;
         Ok((source, hash, bytes.len() as u64))
@@ -85,13 +85,13 @@ impl Folder {
     ///
     /// # Errors
     /// As [`read_any`]; `file-missing` with the nearest name in that folder.
-    pub fn read_any(&self, place: &Place) -> Result<Vec<u8>, Problem> {
+    pub fn read_any(&self, place: &CampaignPath) -> Result<Vec<u8>, Problem> {
         self.bytes(place, read_any)
     }
 
     fn bytes(
         &self,
-        place: &Place,
+        place: &CampaignPath,
         read: fn(&Path, &str) -> Result<Vec<u8>, Problem>,
     ) -> Result<Vec<u8>, Problem> {
         let texts = &self.memory.texts;
@@ -110,14 +110,14 @@ impl Folder {
         &self.real
     }
 
-    /// The part of [`Place::shown`] after the folder; other names unchanged.
+    /// The part of [`CampaignPath::shown`] after the folder; other names unchanged.
     pub fn inside<'a>(&self, shown: &'a str) -> &'a str {
         Path::new(shown).strip_prefix(&self.shown).ok().and_then(Path::to_str).unwrap_or(shown)
     }
 
     /// A path in the campaign, which must stay in the folder, also after symbolic links are
     /// resolved. It need not exist.
-    pub fn place(&self, written: &str, at: &Span) -> Result<Place, Problem> {
+    pub fn place(&self, written: &str, at: &Span) -> Result<CampaignPath, Problem> {
         let outside = |how: &str| {
             problem!("path-outside", at, "`{written}` {how}")
                 .help("paths must be relative to the campaign's folder and stay inside it")
@@ -144,7 +144,7 @@ impl Folder {
         let path = self.real.join(&inside);
         // A path that does not exist is accepted; the error is reported when it is opened.
         if !self.on_disk() {
-            return Ok(Place { path, shown: inside.clone(), inside });
+            return Ok(CampaignPath { path, shown: inside.clone(), inside });
         }
         let real = disk::real(&path).map_err(|why| unreadable(written)(why).at(at))?;
         if real.is_some_and(|real| !real.starts_with(&self.real)) {
@@ -155,7 +155,7 @@ impl Folder {
         } else {
             self.shown.join(&inside).display().to_string()
         };
-        Ok(Place { path, shown, inside })
+        Ok(CampaignPath { path, shown, inside })
     }
 }
 
@@ -166,7 +166,7 @@ pub fn names_in(folder: &Path) -> Vec<String> {
 }
 
 /// Names a file beside one that is missing, if its name is similar.
-fn near_file(problem: Problem, place: &Place) -> Problem {
+fn near_file(problem: Problem, place: &CampaignPath) -> Problem {
     let path = &place.path;
     let named = path.parent().zip(path.file_name().and_then(|name| name.to_str()));
     let Some((folder, name)) = named.filter(|_| problem.code == "file-missing") else {

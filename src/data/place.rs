@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 /// A file or folder of the campaign.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Place {
+pub struct CampaignPath {
     /// Path of the file.
     pub path: PathBuf,
     /// Name for messages: the folder as given by the user, and the path inside.
@@ -13,7 +13,7 @@ pub struct Place {
     pub inside: String,
 }
 
-impl Place {
+impl CampaignPath {
     /// The path of a file in this folder, inside the campaign; the folder may be that of the
     /// campaign itself.
     pub fn below(&self, name: &str) -> String {

@@ -130,7 +130,12 @@ const ENDINGS: &[(&str, NotRead)] = &[
 ];
 
 /// The format of a file.
-pub fn of(bytes: &[u8], path: &Path, shown: &str, options: &Options) -> Result<Format, Problem> {
+pub fn recognised(
+    bytes: &[u8],
+    path: &Path,
+    shown: &str,
+    options: &Options,
+) -> Result<Format, Problem> {
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or("").to_lowercase();
     let not_read = |(what, help): NotRead| {
         Problem::error("format-not-read", format!("`{shown}` is {what}, which is not read"))
@@ -293,7 +298,7 @@ mod tests {
     use super::*;
 
     fn code(bytes: &[u8], name: &str, form: Option<Format>) -> Result<Format, &'static str> {
-        of(bytes, Path::new(name), name, &Options { form, ..Options::default() })
+        recognised(bytes, Path::new(name), name, &Options { form, ..Options::default() })
             .map_err(|problem| problem.code)
     }
 

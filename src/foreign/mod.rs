@@ -136,7 +136,7 @@ pub fn outline(path: &Path, shown: &str, options: &Options) -> Result<File, Vec<
 
 fn read_as(path: &Path, shown: &str, options: &Options, want: Want) -> Result<File, Vec<Problem>> {
     let bytes = Bytes::from(load::bytes(path, shown)?);
-    let format = format::of(&bytes, path, shown, options)?;
+    let format = format::recognised(&bytes, path, shown, options)?;
     let input = Input { bytes: &bytes, shown, options, format, want };
     let mut read = match format {
         Format::Csv | Format::Ascii => text::read(&input)?,

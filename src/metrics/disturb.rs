@@ -29,7 +29,8 @@ pub fn root_mean_square(values: &[f64]) -> f64 {
 /// uniform numbers less six.
 pub fn noise(stream: u64, samples: usize, rows: Range<usize>) -> Vec<f64> {
     let start = mixed(stream);
-    let mut values: Vec<f64> = (0..samples as u64).map(|sample| one(start, sample)).collect();
+    let mut values: Vec<f64> =
+        (0..samples as u64).map(|sample| nearly_normal(start, sample)).collect();
     let rms = root_mean_square(&values[rows]);
     if rms > 0.0 {
         values.iter_mut().for_each(|value| *value /= rms);
@@ -40,7 +41,7 @@ pub fn noise(stream: u64, samples: usize, rows: Range<usize>) -> Vec<f64> {
 /// Numbers of 16 bits in a sum, four from each word.
 const TERMS: u64 = 12;
 
-fn one(start: u64, sample: u64) -> f64 {
+fn nearly_normal(start: u64, sample: u64) -> f64 {
     let words = (0..TERMS / 4)
         .map(|word| mixed(start.wrapping_add((sample * TERMS / 4 + word).wrapping_mul(GOLDEN))));
     let sum: u64 =

@@ -54,11 +54,11 @@ pub fn interpolate(
 
 /// Points on an axis, at which several signals with this axis are interpolated.
 #[derive(Debug)]
-pub struct Located(Vec<Place>);
+pub struct Located(Vec<BetweenSamples>);
 
 /// A point between two samples, or on the first of them.
 #[derive(Debug)]
-struct Place {
+struct BetweenSamples {
     before: usize,
     /// Distance from that sample; 0 on it.
     beyond: f64,
@@ -82,7 +82,7 @@ impl Located {
     }
 }
 
-impl Place {
+impl BetweenSamples {
     fn value(&self, signal: &[f64]) -> f64 {
         let here = signal[self.before];
         if self.beyond == 0.0 {
@@ -97,7 +97,7 @@ impl Place {
 fn places<'a>(
     axis: &'a [f64],
     points: &'a [f64],
-) -> Result<impl Iterator<Item = Result<Place, ResampleError>> + 'a, ResampleError> {
+) -> Result<impl Iterator<Item = Result<BetweenSamples, ResampleError>> + 'a, ResampleError> {
     let (first, last) = match axis {
         [] if points.is_empty() => (0.0, 0.0),
         [] => return Err(ResampleError::Empty),
@@ -116,7 +116,7 @@ fn places<'a>(
             axis.partition_point(|&at| at <= point) - 1
         };
         let step = axis.get(before + 1).map_or(1.0, |next| next - axis[before]);
-        Ok(Place { before, beyond: point - axis[before], step })
+        Ok(BetweenSamples { before, beyond: point - axis[before], step })
     }))
 }
 

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use crate::result::comparison::{Comparison, Sensitivity};
 use crate::result::study::{
-    AtOffset, Found, ParameterStudy, QuantitySpread, SelectionStudy, Study, SyncStudy,
+    AtOffset, ParameterStudy, QuantitySpread, SelectionStudy, Study, StudyResult, SyncStudy,
 };
 use crate::result::{Certification, ClassSpread, DomainResult, QuantityResult, Reported};
 
@@ -248,9 +248,9 @@ fn wanted(result: &DomainResult) -> impl Iterator<Item = impl Serialize> {
 /// As [`certification`].
 pub fn study(study: &Study) -> Result<Vec<File>, csv::Error> {
     match &study.found {
-        Found::Sections(found) => of_selections(found),
-        Found::Sync(found) => of_offsets(found),
-        Found::Parameters(found) => of_parameters(found),
+        StudyResult::Sections(found) => of_selections(found),
+        StudyResult::Sync(found) => of_offsets(found),
+        StudyResult::Parameters(found) => of_parameters(found),
     }
 }
 

@@ -20,7 +20,7 @@ pub struct Study {
     pub protocol: ProtocolInfo,
     pub campaign: CampaignInfo,
     #[serde(flatten)]
-    pub found: Found,
+    pub found: StudyResult,
     #[serde(flatten, with = "told::notes")]
     #[schemars(with = "told::Notes<Remark>")]
     pub notes: Vec<Remark>,
@@ -40,12 +40,12 @@ impl Study {
         protocol: ProtocolInfo,
         campaign: CampaignInfo,
         notes: Vec<Remark>,
-        found: Found,
+        found: StudyResult,
     ) -> Self {
         let kind = match &found {
-            Found::Sections(_) => Kind::Sections,
-            Found::Sync(_) => Kind::Sync,
-            Found::Parameters(_) => Kind::Parameters,
+            StudyResult::Sections(_) => Kind::Sections,
+            StudyResult::Sync(_) => Kind::Sync,
+            StudyResult::Parameters(_) => Kind::Parameters,
         };
         Self { fishplate: THIS.into(), format: FORMAT, kind, protocol, campaign, found, notes }
     }
@@ -55,7 +55,7 @@ impl Study {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 #[expect(clippy::large_enum_variant, reason = "a study is one value")]
-pub enum Found {
+pub enum StudyResult {
     Sections(SelectionStudy),
     Sync(SyncStudy),
     Parameters(ParameterStudy),

@@ -11,7 +11,7 @@ use crate::certify::{Compiled, Opened, campaign_info, protocol_info};
 use crate::check::plan::{Decision, Plan};
 use crate::data::Campaigns;
 use crate::problem::{Problem, Problems};
-use crate::result::study::{Found, Reduction, SelectionStudy, Study};
+use crate::result::study::{Reduction, SelectionStudy, Study, StudyResult};
 use crate::result::{CampaignInfo, Reason};
 use crate::run::{Evaluated, Progress, Shifts, evaluate};
 use crate::study::case::Case;
@@ -126,7 +126,7 @@ pub fn sections_of(
     let (case, reduction) = case_of(evaluated, &compiled.plan, settings).map_err(too_few)?;
     let found = SelectionStudy { reduction, ..selections(&case, &settings.selections) };
     let notes = evaluated.notes.iter().chain(&found.lacking).cloned().collect();
-    Ok(Study::new(protocol_info(compiled), campaign, notes, Found::Sections(found)))
+    Ok(Study::new(protocol_info(compiled), campaign, notes, StudyResult::Sections(found)))
 }
 
 /// A study counts limits of selections: the overall verdict must rest on limits alone.
@@ -178,7 +178,7 @@ fn joined(
     compiled: &Compiled,
     campaigns: Campaigns<'_>,
     evaluated: &Evaluated,
-    found: Found,
+    found: StudyResult,
 ) -> Study {
     let campaign = campaign_of(compiled, campaigns, evaluated);
     Study::new(protocol_info(compiled), campaign, evaluated.notes.clone(), found)

@@ -9,7 +9,9 @@ use crate::check::plan::{Parameter, Plan, SetBy};
 use crate::check::{Override, Overrides};
 use crate::data::Campaigns;
 use crate::problem::{Problem, Problems};
-use crate::result::study::{AtValue, Found, Largest, ParameterStudy, Selected, Study, Varied};
+use crate::result::study::{
+    AtValue, Largest, ParameterStudy, Selected, Study, StudyResult, Varied,
+};
 use crate::run::{Evaluated, Progress};
 use crate::source::Source;
 use crate::study::marked;
@@ -93,7 +95,7 @@ pub fn parameters<'a>(
         compiled,
         campaigns,
         &evaluated,
-        Found::Parameters(ParameterStudy { base, parameters }),
+        StudyResult::Parameters(ParameterStudy { base, parameters }),
     ))
 }
 

@@ -4,7 +4,7 @@ use super::{Settings, joined, too_few};
 use crate::certify::Compiled;
 use crate::data::Campaigns;
 use crate::problem::Problems;
-use crate::result::study::{AtOffset, Estimated, Flipped, Found, Offset, Study, SyncStudy};
+use crate::result::study::{AtOffset, Estimated, Flipped, Offset, Study, StudyResult, SyncStudy};
 use crate::result::{Reason, Remark, UnusedSection, Verdict, VerdictWords};
 use crate::run::{Evaluated, Progress, Shifts, evaluate};
 use crate::study::case::Case;
@@ -80,7 +80,7 @@ pub fn synchronisation<'a>(
         selection: selection.iter().map(|&at| base.sections[at].clone()).collect(),
         offsets: found,
     };
-    Ok(joined(compiled, campaigns, &all[zero], Found::Sync(study)))
+    Ok(joined(compiled, campaigns, &all[zero], StudyResult::Sync(study)))
 }
 
 /// The reference without offset.

@@ -35,10 +35,10 @@ const REQUEST: Duration = Duration::from_secs(60);
 
 /// An object of which parts can be read.
 #[derive(Clone, Debug)]
-pub struct Object(Arc<Found>);
+pub struct Object(Arc<Remote>);
 
 #[derive(Debug)]
-struct Found {
+struct Remote {
     url: String,
     store: Box<dyn ObjectStore>,
     path: Path,
@@ -69,7 +69,7 @@ impl Object {
                 other => unreadable(&reason(&other)),
             })?;
         let version = meta.e_tag.clone().unwrap_or_else(|| meta.last_modified.to_rfc3339());
-        Ok(Self(Arc::new(Found {
+        Ok(Self(Arc::new(Remote {
             url: url.to_string(),
             store,
             path,

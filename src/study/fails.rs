@@ -22,11 +22,11 @@ impl Fails {
     }
 
     #[inline]
-    pub fn one(&mut self, row: u32, column: u32) {
+    pub fn fail(&mut self, row: u32, column: u32) {
         self.bits[row as usize * self.words + column as usize / 64] |= 1 << (column % 64);
     }
 
-    /// As [`Self::one`] where it fails.
+    /// As [`Self::fail`] where it fails.
     #[inline(always)]
     pub fn set(&mut self, row: u32, column: u32, fails: bool) {
         self.bits[row as usize * self.words + column as usize / 64] |=
@@ -54,11 +54,11 @@ impl Fails {
     pub fn between(&mut self, row: u32, columns: &[u32], from: usize, to: usize) {
         let (first, last) = (from.div_ceil(STEP), to / STEP);
         if first >= last {
-            columns[from..to].iter().for_each(|column| self.one(row, *column));
+            columns[from..to].iter().for_each(|column| self.fail(row, *column));
             return;
         }
         for part in [from..first * STEP, last * STEP..to] {
-            columns[part].iter().for_each(|column| self.one(row, *column));
+            columns[part].iter().for_each(|column| self.fail(row, *column));
         }
         let start = row as usize * self.words;
         let set = |cut: usize| &self.from[cut * self.words..(cut + 1) * self.words];
@@ -140,7 +140,7 @@ mod tests {
             let (mut fails, mut single) = (Fails::new(2, 331), Fails::new(2, 331));
             fails.order(&order);
             fails.between(1, &order, from, to);
-            order[from..to].iter().for_each(|column| single.one(1, *column));
+            order[from..to].iter().for_each(|column| single.fail(1, *column));
             assert_eq!(fails.words(), single.words(), "{from} to {to}");
             assert_eq!(fails.count(), (to - from) as u64);
         }

@@ -64,7 +64,7 @@ pub struct Label {
 
 /// Which sections are evaluated, and what is kept beside their values.
 #[derive(Clone, Copy, Debug)]
-pub struct Part {
+pub struct ReduceJob {
     pub shard: Shard,
     /// Whether signals are kept for the plots of a report.
     pub plots: bool,
@@ -74,7 +74,11 @@ pub struct Part {
 ///
 /// # Errors
 /// As [`run::reduce`].
-pub fn reduce(opened: &Opened, part: Part, progress: Progress<'_>) -> Result<Values, Problems> {
+pub fn reduce(
+    opened: &Opened,
+    part: ReduceJob,
+    progress: Progress<'_>,
+) -> Result<Values, Problems> {
     let (compiled, campaigns) = (&opened.compiled, opened.campaigns());
     let reduced = run::reduce(
         &compiled.plan,

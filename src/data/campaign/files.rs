@@ -7,7 +7,7 @@ use indexmap::IndexSet;
 use super::members::RecordKind;
 use super::runs::Run;
 use super::{CAMPAIGN_FILE, Campaign};
-use crate::data::{place::Place, text::unreadable};
+use crate::data::{place::CampaignPath, text::unreadable};
 use crate::disk;
 use crate::problem::Problem;
 
@@ -25,7 +25,7 @@ impl Campaign {
     /// Folders and files that the campaign is read from, as far as they are named, without symbolic
     /// links.
     pub fn inputs(&self) -> Inputs {
-        let real = |place: &Place| {
+        let real = |place: &CampaignPath| {
             disk::real(&place.path).ok().flatten().unwrap_or_else(|| place.path.clone())
         };
         let all = RecordKind::ALL.into_iter().flat_map(|kind| self.records(kind));
@@ -35,9 +35,9 @@ impl Campaign {
             let file = |kind| self.run_source(run, kind)?.file(&run.name.span);
             RecordKind::ALL.map(file).into_iter().filter_map(Result::ok).collect::<Vec<_>>()
         };
-        let of_runs: Vec<Place> = self.runs.iter().flat_map(of_run).collect();
+        let of_runs: Vec<CampaignPath> = self.runs.iter().flat_map(of_run).collect();
         let folder = self.folder.real().to_path_buf();
-        let beside = |place: &Place| {
+        let beside = |place: &CampaignPath| {
             real(place).parent().map(Path::to_path_buf).filter(|beside| *beside != folder)
         };
         let mut folders: Vec<PathBuf> = folders.chain(of_runs.iter().filter_map(beside)).collect();
@@ -47,7 +47,7 @@ impl Campaign {
     }
 
     /// A file of the campaign by its path inside, at the beginning of `campaign.yaml`.
-    pub(in crate::data) fn inner(&self, path: &str) -> Result<Place, Problem> {
+    pub(in crate::data) fn inner(&self, path: &str) -> Result<CampaignPath, Problem> {
         self.folder.place(path, &self.tree.start())
     }
 
@@ -94,7 +94,7 @@ impl Campaign {
     fn named_files(&self) -> Result<Vec<String>, Problem> {
         let own = self.protocol.iter().map(|protocol| &protocol.value);
         let protocols = own.chain(&self.protocols).filter(|_| self.folder.on_disk());
-        let there = |place: &Place| disk::is_file(&place.path).is_ok_and(|there| there);
+        let there = |place: &CampaignPath| disk::is_file(&place.path).is_ok_and(|there| there);
         let protocols = protocols.filter_map(|path| self.inner(path).ok()).filter(there);
         Ok(self.vehicle_files()?.into_iter().chain(protocols).map(|place| place.inside).collect())
     }
@@ -115,7 +115,7 @@ impl Campaign {
     ///
     /// # Errors
     /// A name leads outside.
-    pub fn vehicle_files(&self) -> Result<Vec<Place>, Problem> {
+    pub fn vehicle_files(&self) -> Result<Vec<CampaignPath>, Problem> {
         if !self.folder.on_disk() {
             return Ok(Vec::new());
         }
@@ -123,7 +123,7 @@ impl Campaign {
         let texts =
             maps.flat_map(|(_, node)| node.entries()).filter_map(|(_, node)| node.scalar_text());
         let named = texts.filter(|text| text.ends_with(".csv"));
-        let mut found: Vec<Place> = Vec::new();
+        let mut found: Vec<CampaignPath> = Vec::new();
         for written in ["profile.csv", "profile_worn.csv"].into_iter().chain(named) {
             let place = self.inner(written)?;
             let there = disk::is_file(&place.path).map_err(unreadable(&place.shown))?;

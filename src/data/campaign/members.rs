@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::opening::Reader;
 use crate::data::{
     folder::Folder,
-    place::Place,
+    place::CampaignPath,
     record::{Format, Held, Known, Stored},
 };
 use crate::problem::{Problem, problem};
@@ -64,7 +64,7 @@ pub struct RecordFolder {
     /// Files that belong to no section; listed if a record is missing.
     pub strangers: OnceLock<Vec<String>>,
     /// Where the folder is, once it was looked for.
-    pub place: OnceLock<Place>,
+    pub place: OnceLock<CampaignPath>,
     /// What is known of the records by section, if the folder is in a store, and their parts.
     objects: Arc<Mutex<(BTreeMap<String, Known>, Held)>>,
 }

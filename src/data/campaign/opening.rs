@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::data::{folder::Folder, place::Place, table::Table};
+use crate::data::{folder::Folder, place::CampaignPath, table::Table};
 use crate::problem::Problems;
 use crate::source::{Source, Span, Spanned};
 use crate::yaml::{self, FromNode, Key, Node};
@@ -30,7 +30,11 @@ pub type Reader<'a, 'o> = yaml::Reader<'a, Opening<'o>>;
 
 impl Reader<'_, '_> {
     /// The tree of a YAML file. `named`: where the file is named, if it is.
-    pub fn yaml(&mut self, place: &Place, named: Option<&Span>) -> Option<(Arc<Source>, Node)> {
+    pub fn yaml(
+        &mut self,
+        place: &CampaignPath,
+        named: Option<&Span>,
+    ) -> Option<(Arc<Source>, Node)> {
         let read = self.with.folder.read_text(place).map_err(|problem| match named {
             Some(span) => problem.or_at(span),
             None => problem,
@@ -42,7 +46,7 @@ impl Reader<'_, '_> {
     }
 
     /// Where a file is that `campaign.yaml` names, and the place of its name.
-    fn named(&mut self, key: &Key, node: &Node) -> Option<(Place, Span)> {
+    fn named(&mut self, key: &Key, node: &Node) -> Option<(CampaignPath, Span)> {
         let Spanned { value, span } = Spanned::<String>::from_node(self, key, node)?;
         let place = self.with.folder.place(&value, &span);
         Some((self.keep(place)?, span))

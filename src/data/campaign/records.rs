@@ -9,10 +9,10 @@ use std::sync::Arc;
 use super::Campaign;
 use super::members::{self, RecordFolder, RecordKind, WhichRecord};
 use super::opening::ReadFile;
-use super::runs::Part;
+use super::runs::RunStretch;
 use crate::data::{
     folder::{check_file_name, names_in},
-    place::Place,
+    place::CampaignPath,
     record::{Format, Record, RecordSource, Wanted},
     table::Cell,
     text::{other_format, unreadable},
@@ -81,7 +81,10 @@ impl Campaign {
         Ok(cells(names))
     }
 
-    pub(super) fn record_folder(&self, which: WhichRecord) -> Result<(Place, &Span), Problem> {
+    pub(super) fn record_folder(
+        &self,
+        which: WhichRecord,
+    ) -> Result<(CampaignPath, &Span), Problem> {
         let found = self.found(which)?;
         let RecordFolder { folder: Spanned { value: written, span }, place, .. } = found;
         if found.in_store() {
@@ -173,7 +176,7 @@ impl Campaign {
     ///
     /// # Errors
     /// `record-in-memory`; as [`Campaign::record_source`].
-    pub fn record_place(&self, kind: RecordKind, section: &Cell) -> Result<Place, Problem> {
+    pub fn record_place(&self, kind: RecordKind, section: &Cell) -> Result<CampaignPath, Problem> {
         self.record_source(kind, section)?.file(&section.span)
     }
 
@@ -181,7 +184,7 @@ impl Campaign {
     ///
     /// # Errors
     /// `record-in-memory`; as [`Campaign::source_of`].
-    pub fn place_of(&self, which: WhichRecord, section: &Cell) -> Result<Place, Problem> {
+    pub fn place_of(&self, which: WhichRecord, section: &Cell) -> Result<CampaignPath, Problem> {
         self.source_of(which, section)?.file(&section.span)
     }
 
@@ -287,7 +290,7 @@ impl Campaign {
         which: WhichRecord,
         section: &Cell,
         wanted: &[Wanted],
-        part: Option<&Part>,
+        part: Option<&RunStretch>,
     ) -> Result<(Record, ReadFile), Vec<Problem>> {
         let source = self.source_of(which, section)?;
         let offset = self.offset_of(which.kind, section)?;
@@ -376,7 +379,7 @@ fn no_folder(inside: &str, at: &Span) -> Problem {
 }
 
 /// The folders beside one that does not exist, by their paths inside the campaign.
-fn folders_beside(missing: &Place) -> Vec<String> {
+fn folders_beside(missing: &CampaignPath) -> Vec<String> {
     let Some(beside) = missing.path.parent() else { return Vec::new() };
     let inside = missing.inside.rfind('/').map_or("", |at| &missing.inside[..=at]);
     let mut names = names_in(beside);

@@ -179,13 +179,13 @@ pub fn check_column(table: &Table, runs: &[Run], problems: &mut Problems) {
 /// The part of a run that is read for a section: what the axis is called, and from where to where,
 /// SI.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Part {
+pub struct RunStretch {
     pub axis: String,
     pub from: f64,
     pub to: f64,
 }
 
-impl Part {
+impl RunStretch {
     /// How much of a run is read on each side of a section, in lengths of the section, if there is
     /// so much: a section of 70 m at 70 km/h then has 7 s on each side, in which filters from 0.4
     /// Hz on settle.

@@ -21,7 +21,7 @@ const MOST: usize = 32 << 20;
 pub type Numbers = Option<Arc<Vec<f64>>>;
 
 /// Rows of a file that are decoded together: the file, and the first row.
-pub type Place = (PathBuf, usize);
+pub type BlockKey = (PathBuf, usize);
 
 /// The blocks that were used last; shared by all files of a campaign.
 #[derive(Clone, Debug, Default)]
@@ -32,7 +32,7 @@ pub struct Decoded {
     made: Arc<std::sync::atomic::AtomicUsize>,
 }
 
-type Kept = (Place, Arc<Block>);
+type Kept = (BlockKey, Arc<Block>);
 
 /// Columns of a block by their position in the file. Who decodes holds the lock, so that others
 /// wait instead of decoding the same.
@@ -44,7 +44,7 @@ impl Decoded {
     /// those that are not kept, in the order in which it is asked for them.
     pub fn get(
         &self,
-        place: Place,
+        place: BlockKey,
         positions: &[usize],
         decode: impl FnOnce(&[usize]) -> Vec<Numbers>,
     ) -> Vec<Numbers> {

@@ -26,7 +26,7 @@ const FOOTERS: usize = 4;
 /// campaign.
 #[derive(Clone, Debug, Default)]
 pub struct Held {
-    parts: Arc<Mutex<Recent<Part>>>,
+    parts: Arc<Mutex<Recent<HeldBytes>>>,
     /// Footers of Parquet files.
     layouts: Arc<Mutex<Recent<Footer>>>,
     pub(super) decoded: Decoded,
@@ -36,13 +36,13 @@ pub struct Held {
 type Footer = (PathBuf, Arc<Layout>);
 
 #[derive(Debug)]
-struct Part {
+struct HeldBytes {
     file: PathBuf,
     start: u64,
     bytes: Bytes,
 }
 
-impl Part {
+impl HeldBytes {
     fn bytes(&self, file: &Path, range: &Range<u64>) -> Option<Bytes> {
         let from = usize::try_from(range.start.checked_sub(self.start)?).ok()?;
         let to = usize::try_from(range.end.checked_sub(self.start)?).ok()?;
@@ -77,7 +77,11 @@ impl Held {
     pub fn keep(&self, file: &Path, start: u64, bytes: Bytes) {
         let size = bytes.len();
         if size <= MOST {
-            locked(&self.parts).add(Part { file: file.to_path_buf(), start, bytes }, size, MOST);
+            locked(&self.parts).add(
+                HeldBytes { file: file.to_path_buf(), start, bytes },
+                size,
+                MOST,
+            );
         }
     }
 }

@@ -8,7 +8,7 @@ use super::Column;
 use super::held::Held;
 use super::recent::locked;
 use super::stored::{Stored, refused};
-use crate::data::place::Place;
+use crate::data::place::CampaignPath;
 use crate::problem::Problem;
 use crate::source::Span;
 use crate::store::{Object, Refused};
@@ -20,7 +20,7 @@ pub struct Known {
     /// Of a record in a store: it is looked for once.
     object: Arc<OnceLock<Result<Object, Refused>>>,
     /// Where the file is, if it was found before.
-    pub place: Arc<OnceLock<Place>>,
+    pub place: Arc<OnceLock<CampaignPath>>,
     /// Parts of this file and others.
     pub held: Held,
 }

@@ -11,14 +11,14 @@ use super::memory::Frame;
 use super::stored::Stored;
 use super::stretch::{Block, Run};
 use super::{Column, Format, Record, Wanted, text};
-use crate::data::{cells::Heading, place::Place};
+use crate::data::{cells::Heading, place::CampaignPath};
 use crate::problem::{Problem, problem};
 use crate::source::Span;
 
 /// A record that can be read.
 #[derive(Clone, Debug)]
 pub enum RecordSource {
-    File(Place),
+    File(CampaignPath),
     Object(Stored),
     Memory(Arc<Frame>),
 }
@@ -34,7 +34,7 @@ impl RecordSource {
     /// A file that is not part of a campaign; `shown` is its name in messages.
     pub fn at(path: &Path, shown: &str) -> Self {
         let (path, shown) = (path.to_path_buf(), shown.to_string());
-        Self::File(Place { path, inside: shown.clone(), shown })
+        Self::File(CampaignPath { path, inside: shown.clone(), shown })
     }
 
     /// The name in messages and results: the path inside the campaign.
@@ -177,7 +177,7 @@ impl RecordSource {
     ///
     /// # Errors
     /// `record-in-memory`, `record-in-store`.
-    pub fn file(self, at: &Span) -> Result<Place, Problem> {
+    pub fn file(self, at: &Span) -> Result<CampaignPath, Problem> {
         match self {
             Self::File(place) => Ok(place),
             Self::Object(_) => {

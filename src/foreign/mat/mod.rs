@@ -49,7 +49,7 @@ pub fn read(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
     } else {
         (v73::variables(input, &mut budget)?, "MATLAB 7.3 (HDF5)")
     };
-    let mut read = tables::of(variables, input.shown)?;
+    let mut read = tables::tables_of(variables, input.shown)?;
     read.facts.push(("version".into(), version.into()));
     Ok(read)
 }

@@ -31,7 +31,7 @@ const LONGEST_FACT: usize = 200;
 const MOST_NUMBERS: usize = 4;
 
 /// The tables of a file.
-pub fn of(variables: Fields, shown: &str) -> Result<Read, Vec<Problem>> {
+pub fn tables_of(variables: Fields, shown: &str) -> Result<Read, Vec<Problem>> {
     let mut read = Read::default();
     let mut loose: Fields = Vec::new();
     for (name, value) in variables {
@@ -342,7 +342,7 @@ mod tests {
     }
 
     fn read(list: Vec<(&str, Value)>) -> Vec<Table> {
-        of(fields(list), "f").expect("tables").tables
+        tables_of(fields(list), "f").expect("tables").tables
     }
 
     fn described(table: &Table) -> Vec<String> {
@@ -408,7 +408,7 @@ mod tests {
     #[test]
     fn a_file_without_channels_is_refused() {
         assert!(
-            of(fields(vec![("a", text("x"))]), "f")
+            tables_of(fields(vec![("a", text("x"))]), "f")
                 .is_err_and(|problems| problems[0].code == "no-numbers")
         );
     }

@@ -134,7 +134,8 @@ fn is_near(ratio: f64, group: &Common) -> bool {
 /// One guess for each channel that is needed, and for each other one of the convention that a file
 /// has; in the order of the convention.
 pub fn guesses(looks: &[Look], needs: &[&ChannelNeed], convention: &Convention) -> Vec<Guess> {
-    let mut guesses: Vec<Guess> = needs.iter().map(|need| one(looks, need, convention)).collect();
+    let mut guesses: Vec<Guess> =
+        needs.iter().map(|need| guess_channel(looks, need, convention)).collect();
     let axes = ["time", "distance", "speed"];
     let names = || convention.names.0.iter().map(|(name, _)| &name.text);
     for name in names().filter(|name| {
@@ -192,7 +193,7 @@ pub fn guesses(looks: &[Look], needs: &[&ChannelNeed], convention: &Convention) 
     guesses
 }
 
-fn one(looks: &[Look], need: &ChannelNeed, convention: &Convention) -> Guess {
+fn guess_channel(looks: &[Look], need: &ChannelNeed, convention: &Convention) -> Guess {
     let found = named(looks, convention, &need.column);
     let names: Vec<String> = found.iter().map(|look| look.name.clone()).collect();
     let guess = |from: Option<&Look>, reasons: Vec<String>| Guess {

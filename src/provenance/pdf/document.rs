@@ -44,7 +44,7 @@ enum Table {
 
 /// Position of one object.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Place {
+enum ObjectPosition {
     Free,
     At(usize),
     /// In an object stream, at this index.
@@ -144,13 +144,13 @@ impl<'a> Document<'a> {
         Ok(found)
     }
 
-    fn place(&self, number: u32) -> Result<Place, Broken> {
+    fn place(&self, number: u32) -> Result<ObjectPosition, Broken> {
         for table in &self.tables {
             if let Some(place) = table.place(number, self.bytes)? {
                 return Ok(place);
             }
         }
-        Ok(Place::Free)
+        Ok(ObjectPosition::Free)
     }
 
     /// An object by its number.
@@ -167,8 +167,8 @@ impl<'a> Document<'a> {
 
     fn object_there(&self, number: u32) -> Result<Object, Broken> {
         match self.place(number)? {
-            Place::Free => Ok(Object::Null),
-            Place::At(at) => {
+            ObjectPosition::Free => Ok(Object::Null),
+            ObjectPosition::At(at) => {
                 let mut parser = self.parser(at);
                 if parser.integer()? != number as usize {
                     return Err(Broken("an object is not where it should be"));
@@ -179,12 +179,12 @@ impl<'a> Document<'a> {
                 }
                 parser.object(0)
             }
-            Place::In(group, index) => self.grouped(group, index),
+            ObjectPosition::In(group, index) => self.grouped(group, index),
         }
     }
 
     fn grouped(&self, group: u32, index: usize) -> Result<Object, Broken> {
-        let Place::At(at) = self.place(group)? else {
+        let ObjectPosition::At(at) = self.place(group)? else {
             return Err(Broken("a group of objects is missing"));
         };
         let (dict, data) = self.stream_at(at, Some(group))?;
@@ -225,7 +225,7 @@ impl<'a> Document<'a> {
 
     /// The unpacked data of a stream, of at most `most` bytes.
     pub fn stream(&self, number: u32, most: usize) -> Result<Vec<u8>, Broken> {
-        let Place::At(at) = self.place(number)? else {
+        let ObjectPosition::At(at) = self.place(number)? else {
             return Err(Broken("the data of an attached file are missing"));
         };
         let (dict, data) = self.stream_at(at, Some(number))?;
@@ -258,7 +258,7 @@ impl<'a> Document<'a> {
 }
 
 impl Table {
-    fn place(&self, number: u32, bytes: &[u8]) -> Result<Option<Place>, Broken> {
+    fn place(&self, number: u32, bytes: &[u8]) -> Result<Option<ObjectPosition>, Broken> {
         let number = number as usize;
         let damaged = Broken("its table of places is damaged");
         match self {
@@ -280,9 +280,9 @@ impl Table {
                     .and_then(|digits| digits.parse().ok())
                     .ok_or(Broken("its table of places is damaged"))?;
                 Ok(Some(if text.as_bytes().get(17) == Some(&b'n') {
-                    Place::At(offset)
+                    ObjectPosition::At(offset)
                 } else {
-                    Place::Free
+                    ObjectPosition::Free
                 }))
             }
             Self::Packed { rows, widths, numbers } => {
@@ -308,7 +308,7 @@ impl Table {
     }
 }
 
-fn packed_place(fields: &[u8], widths: &[usize; 3]) -> Place {
+fn packed_place(fields: &[u8], widths: &[usize; 3]) -> ObjectPosition {
     let number = |from: usize, width: usize| {
         fields[from..from + width]
             .iter()
@@ -317,8 +317,8 @@ fn packed_place(fields: &[u8], widths: &[usize; 3]) -> Place {
     let kind = if widths[0] == 0 { 1 } else { number(0, widths[0]) };
     let (second, third) = (number(widths[0], widths[1]), number(widths[0] + widths[1], widths[2]));
     match (kind, u32::try_from(second)) {
-        (1, _) => Place::At(second),
-        (2, Ok(group)) => Place::In(group, third),
-        _ => Place::Free,
+        (1, _) => ObjectPosition::At(second),
+        (2, Ok(group)) => ObjectPosition::In(group, third),
+        _ => ObjectPosition::Free,
     }
 }

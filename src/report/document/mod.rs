@@ -124,7 +124,7 @@ pub enum Block {
     /// Blocks under a line that opens and closes them on a screen.
     Details(Text, Vec<Block>),
     /// A part of a chapter, with a place in the navigation.
-    Part(Part),
+    Part(Topic),
     /// Blocks about the sections of one zone.
     Zone(Option<String>, Vec<Block>),
     /// A text line by line, each with its number.
@@ -222,7 +222,7 @@ impl Figure {
 
 /// What a chapter tells of one thing, such as a quantity.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Part {
+pub struct Topic {
     /// Anchor; not user text.
     pub id: String,
     pub title: String,
@@ -279,7 +279,7 @@ fn on(blocks: &[Block], medium: Medium) -> Vec<Block> {
         Block::Only(..) => Vec::new(),
         Block::Details(line, inner) => vec![Block::Details(line.clone(), on(inner, medium))],
         Block::Zone(zone, inner) => vec![Block::Zone(zone.clone(), on(inner, medium))],
-        Block::Part(part) => vec![Block::Part(Part {
+        Block::Part(part) => vec![Block::Part(Topic {
             opening: on(&part.opening, medium),
             blocks: on(&part.blocks, medium),
             ..part.clone()

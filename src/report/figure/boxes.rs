@@ -144,7 +144,7 @@ fn draw(canvas: &mut Canvas, panel: &Panel<'_>, top: f64) {
         );
         let x = ratios.frame.x.at(at as f64 + 0.5);
         canvas.group(&Group::mark(&title), |canvas| {
-            one(canvas, &ratios.frame, x, HALF.min(0.32 * ratios.slot), spread);
+            draw_box(canvas, &ratios.frame, x, HALF.min(0.32 * ratios.slot), spread);
         });
         ratios.label(canvas, at, label);
     }
@@ -152,7 +152,7 @@ fn draw(canvas: &mut Canvas, panel: &Panel<'_>, top: f64) {
 }
 
 /// A box, its whiskers and the farthest outlier on each side.
-fn one(canvas: &mut Canvas, frame: &Frame, x: f64, half: f64, spread: &Spread) {
+fn draw_box(canvas: &mut Canvas, frame: &Frame, x: f64, half: f64, spread: &Spread) {
     let place = |value: f64| frame.y.at(value).clamp(frame.top(), frame.bottom());
     let at = |dx: f64, value: f64| (x + dx, place(value));
     let (low, high) = spread.whiskers();

@@ -89,7 +89,7 @@ fn limits(quantity: &QuantityResult) -> Vec<f64> {
     all
 }
 
-fn one(
+fn panel(
     canvas: &mut Canvas,
     (_, quantity): Numbered<'_>,
     marks: &Marks<'_>,

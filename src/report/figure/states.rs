@@ -93,12 +93,12 @@ pub fn signals(picture: &Picture) -> String {
     for (at, panel) in picture.panels.iter().enumerate() {
         let left = (at % 2) as f64 * 0.5 * WIDTH;
         let row = top + (at / 2) as f64 * (PANEL + BETWEEN);
-        one(&mut canvas, picture, panel, left, row);
+        draw_panel(&mut canvas, picture, panel, left, row);
     }
     canvas.finish()
 }
 
-fn one(canvas: &mut Canvas, picture: &Picture, panel: &Panel, left: f64, top: f64) {
+fn draw_panel(canvas: &mut Canvas, picture: &Picture, panel: &Panel, left: f64, top: f64) {
     let drawn = [
         ("curve measured", &panel.measured, MEASURED_PEN),
         ("curve simulated", &panel.simulated, SIMULATED_PEN),

@@ -11,15 +11,15 @@ use crate::report::document::*;
 use crate::report::figure;
 use crate::report::number;
 use crate::report::view::{self, Opening};
-use crate::result::study::{Found, QuantitySpread, Share, Study};
+use crate::result::study::{QuantitySpread, Share, Study, StudyResult};
 use crate::result::{ParameterInfo, Scope, Verdict, VerdictWords};
 
 /// What was varied.
 fn subject(study: &Study) -> &'static str {
     match &study.found {
-        Found::Sections(_) => "Selection of sections",
-        Found::Sync(_) => "Synchronisation",
-        Found::Parameters(_) => "Parameters of the protocol",
+        StudyResult::Sections(_) => "Selection of sections",
+        StudyResult::Sync(_) => "Synchronisation",
+        StudyResult::Parameters(_) => "Parameters of the protocol",
     }
 }
 
@@ -32,9 +32,9 @@ pub fn title(study: &Study) -> String {
 pub fn opening(study: &Study) -> Opening {
     let words = &study.protocol.verdict_words;
     match &study.found {
-        Found::Sections(found) => sections::opening(found, words),
-        Found::Sync(found) => sync::opening(found, words),
-        Found::Parameters(found) => parameters::opening(found, words),
+        StudyResult::Sections(found) => sections::opening(found, words),
+        StudyResult::Sync(found) => sync::opening(found, words),
+        StudyResult::Parameters(found) => parameters::opening(found, words),
     }
 }
 
@@ -42,9 +42,9 @@ pub fn opening(study: &Study) -> Opening {
 pub fn document(study: &Study) -> Document {
     let words = &study.protocol.verdict_words;
     let mut chapters = match &study.found {
-        Found::Sections(found) => sections::chapters(found, words),
-        Found::Sync(found) => sync::chapters(found, words),
-        Found::Parameters(found) => parameters::chapters(found, words),
+        StudyResult::Sections(found) => sections::chapters(found, words),
+        StudyResult::Sync(found) => sync::chapters(found, words),
+        StudyResult::Parameters(found) => parameters::chapters(found, words),
     };
     if !study.notes.is_empty() {
         let notes = study.notes.iter().map(|note| note.text().to_string());
@@ -103,8 +103,8 @@ fn scoped(statistic: impl Display, scope: &Scope) -> String {
 pub fn figures(study: &Study) -> Vec<(String, String)> {
     let words = &study.protocol.verdict_words;
     match &study.found {
-        Found::Sections(found) => boxes(&found.quantities, BOXES),
-        Found::Sync(found) => {
+        StudyResult::Sections(found) => boxes(&found.quantities, BOXES),
+        StudyResult::Sync(found) => {
             let mut drawn = vec![
                 ("selection".into(), figure::selection(found)),
                 ("shares".into(), figure::shares(found, words)),
@@ -114,7 +114,7 @@ pub fn figures(study: &Study) -> Vec<(String, String)> {
             }
             drawn
         }
-        Found::Parameters(found) => vec![("choices".into(), figure::choices(found, words))],
+        StudyResult::Parameters(found) => vec![("choices".into(), figure::choices(found, words))],
     }
 }
 

@@ -71,7 +71,7 @@ pub fn chapters(found: &SyncStudy, words: &VerdictWords) -> Vec<Chapter> {
     let share = format!("Share with the verdict '{}'", words.good);
     vec![
         Chapter::new("shares", share, shares(found, words)),
-        Chapter::new("one", "Single selection", one(found)),
+        Chapter::new("one", "Single selection", single_selection(found)),
         Chapter::new("estimates", "Offsets estimated from the signals", estimates(found)),
         Chapter::new("spread", "Scatter over the selections", blocks),
     ]
@@ -160,7 +160,7 @@ fn lost(at: &AtOffset, offset: &str) -> Vec<Vec<Cell>> {
         .collect()
 }
 
-fn one(found: &SyncStudy) -> Vec<Block> {
+fn single_selection(found: &SyncStudy) -> Vec<Block> {
     let mut columns = vec![Column::text("Quantity"), Column::short("Statistic")];
     columns.extend(found.offsets.iter().map(|at| Column::number(shown(found, at.offset.value()))));
     let first = found.offsets.iter().find(|at| !at.selected.is_empty());

@@ -18,7 +18,7 @@ pub fn chapter(view: &View<'_>) -> Option<Chapter> {
     (!all.is_empty()).then(|| Chapter::new("quantities", "Quantities", blocks))
 }
 
-fn part(at: usize, quantity: &QuantityResult, view: &View<'_>) -> Part {
+fn part(at: usize, quantity: &QuantityResult, view: &View<'_>) -> Topic {
     let finding = Finding::of_quantity(quantity);
     let rows = if sides_apart(quantity) { "Pairs" } else { "Values" };
     let reason = quantity.reason.as_ref().map(|reason| number::raised(reason.text()));
@@ -55,7 +55,7 @@ fn part(at: usize, quantity: &QuantityResult, view: &View<'_>) -> Part {
     blocks.extend(values::worst(quantity).map(Block::from));
     blocks.push(values::all(quantity));
     let title = quantity.title.clone();
-    Part {
+    Topic {
         id: format!("quantity-{at}"),
         title,
         short: caption("", quantity),

@@ -97,7 +97,7 @@ pub fn all(quantity: &QuantityResult) -> Block {
 }
 
 /// A row of values: a section, a record of it, and which of several values of one position.
-type Place<'a> = (&'a str, Option<&'a RecordName>, usize);
+type ValueRow<'a> = (&'a str, Option<&'a RecordName>, usize);
 /// The name of a record, shortened for a table.
 fn shortened(record: &RecordName) -> String {
     name(&record.to_string())
@@ -111,7 +111,7 @@ type BySignal<'a> = HashMap<&'a str, &'a PairValue>;
 fn tables(quantity: &QuantityResult) -> Vec<Table> {
     let signals = first_seen(quantity.values.iter().map(|pair| pair.signal.as_str()));
     let width = if quantity.has_sides { SIGNALS_WITH_SIDES } else { SIGNALS_WITHOUT_SIDES };
-    let mut rows: IndexMap<Place<'_>, BySignal<'_>> = IndexMap::new();
+    let mut rows: IndexMap<ValueRow<'_>, BySignal<'_>> = IndexMap::new();
     let mut seen: HashMap<(&str, Option<&RecordName>, &str), usize> = HashMap::new();
     for pair in &quantity.values {
         let (section, record) = (pair.section.as_str(), pair.record.as_ref());
@@ -139,10 +139,10 @@ fn tables(quantity: &QuantityResult) -> Vec<Table> {
 fn table(
     quantity: &QuantityResult,
     signals: &[&str],
-    rows: &IndexMap<Place<'_>, BySignal<'_>>,
+    rows: &IndexMap<ValueRow<'_>, BySignal<'_>>,
 ) -> Table {
     let (sides, format) = (Sides::of(quantity), format(quantity));
-    let row = |((section, record, _), pairs): (&Place<'_>, &BySignal<'_>)| {
+    let row = |((section, record, _), pairs): (&ValueRow<'_>, &BySignal<'_>)| {
         let zone = pairs.values().next().and_then(|pair| pair.zone.as_deref()).map(name);
         let mut cells =
             vec![Cell::from(name(section)), record.map(shortened).into(), (&zone).into()];

@@ -11,7 +11,7 @@ use crate::result::{ClassSpread, Furthest, OfRecord, PairValue, RecordName, Spre
 const EQUAL: f64 = 1e-9;
 
 /// Section, signal, and which of the quantity's values.
-type Place<'a> = (&'a str, &'a str, Option<&'a str>);
+type SpreadKey<'a> = (&'a str, &'a str, Option<&'a str>);
 
 /// The spread of the records; `None` where no place has two of them.
 pub fn spread(center: Center, values: &[PairValue]) -> Option<Spread> {
@@ -27,7 +27,7 @@ fn class(zone: Option<&str>, values: &[PairValue]) -> Option<ClassSpread> {
     let values: Vec<&PairValue> =
         values.iter().filter(|value| zone.is_none() || value.zone.as_deref() == zone).collect();
     let mut records: IndexMap<Option<&RecordName>, Vec<&PairValue>> = IndexMap::new();
-    let mut places: IndexMap<Place<'_>, Vec<f64>> = IndexMap::new();
+    let mut places: IndexMap<SpreadKey<'_>, Vec<f64>> = IndexMap::new();
     for value in values {
         records.entry(value.record.as_ref()).or_default().push(value);
         places
@@ -38,11 +38,11 @@ fn class(zone: Option<&str>, values: &[PairValue]) -> Option<ClassSpread> {
     let records =
         ranked(records.into_iter().filter_map(|(name, values)| of_record(name, &values)).collect());
     let means: Vec<f64> = records.iter().map(|record| record.mean).collect();
-    let apart: Vec<(Place<'_>, f64, f64)> = places
+    let apart: Vec<(SpreadKey<'_>, f64, f64)> = places
         .into_iter()
         .filter_map(|(place, values)| Some((place, statistics::range(&values)?, std(&values)?)))
         .collect();
-    let mean_of = |of: fn(&(Place<'_>, f64, f64)) -> f64| {
+    let mean_of = |of: fn(&(SpreadKey<'_>, f64, f64)) -> f64| {
         statistics::mean(&apart.iter().map(of).collect::<Vec<_>>())
     };
     // The first of equal ones.
@@ -64,7 +64,7 @@ fn std(values: &[f64]) -> Option<f64> {
     statistics::standard_deviation(values, Divisor::Sample)
 }
 
-fn at((section, signal, taken): Place<'_>, value: f64) -> Furthest {
+fn at((section, signal, taken): SpreadKey<'_>, value: f64) -> Furthest {
     let signal = taken.map_or_else(|| signal.to_string(), |taken| format!("{signal}, {taken}"));
     Furthest { value, section: section.to_string(), signal }
 }

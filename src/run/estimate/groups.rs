@@ -23,7 +23,7 @@ pub struct Group<'a> {
 
 /// The group of rows of an estimate.
 #[derive(Clone, Debug)]
-pub struct Part<'a> {
+pub struct RowGroup<'a> {
     scope: &'a Scope,
     /// The zones of the scope, or the zone of one section.
     zones: Vec<String>,
@@ -53,7 +53,7 @@ impl<'a> Group<'a> {
     /// quantity excludes or that have no repeats, unless all are excluded; groups in which a
     /// condition leaves no row, unless it leaves none in any group. A group of a place exists
     /// wherever the place was recorded.
-    pub fn parts<'s>(&self, scope: &'s Scope) -> Vec<Part<'s>>
+    pub fn parts<'s>(&self, scope: &'s Scope) -> Vec<RowGroup<'s>>
     where
         'a: 's,
     {
@@ -72,8 +72,12 @@ impl<'a> Group<'a> {
         if !scope.zones.is_empty() && !scope.zones.iter().any(|zone| needed(zone) || filled(zone)) {
             return Vec::new();
         }
-        let empty =
-            Part { scope, zones: scope.zones.clone(), keys: Vec::new(), members: Ok(Vec::new()) };
+        let empty = RowGroup {
+            scope,
+            zones: scope.zones.clone(),
+            keys: Vec::new(),
+            members: Ok(Vec::new()),
+        };
         let mut inside: Vec<Member<'s>> = Vec::new();
         for member in members {
             match empty.has_section(member.unit, self.facts) {
@@ -81,10 +85,10 @@ impl<'a> Group<'a> {
                 Ok(false) => {}
                 // Where it cannot be determined which rows belong to it, the limit is not
                 // assessable, and the reason is given.
-                Err(reason) => return vec![Part { members: Err(reason), ..empty }],
+                Err(reason) => return vec![RowGroup { members: Err(reason), ..empty }],
             }
         }
-        let everywhere = Part { zones: Vec::new(), ..empty.clone() };
+        let everywhere = RowGroup { zones: Vec::new(), ..empty.clone() };
         let meets =
             |member: &Member<'_>| everywhere.has_section(member.unit, self.facts) == Ok(true);
         let met = scope.condition.is_none() || members.iter().any(meets);
@@ -97,12 +101,12 @@ impl<'a> Group<'a> {
         } else if met && scope.condition.is_some() && !scope.zones.is_empty() && inside.is_empty() {
             return Vec::new();
         }
-        vec![Part { members: Ok(inside), ..empty }]
+        vec![RowGroup { members: Ok(inside), ..empty }]
     }
 
     /// The rows of a group by its keys. For places, every recorded position has a group; for
     /// sections, the groups that occur.
-    fn by_keys<'s>(&self, empty: &Part<'s>, inside: &[Member<'s>]) -> Vec<Part<'s>> {
+    fn by_keys<'s>(&self, empty: &RowGroup<'s>, inside: &[Member<'s>]) -> Vec<RowGroup<'s>> {
         let keys = &empty.scope.each;
         let is_place = |key: &Key| matches!(key, Key::Place(_));
         let mut rows_of: HashMap<Vec<String>, Vec<Member<'s>>> = HashMap::new();
@@ -128,7 +132,7 @@ impl<'a> Group<'a> {
                     Some(found) => IndexSet::from([found.clone()]),
                     None => self.members.iter().map(|member| self.of_key(key, member)).collect(),
                 };
-                let with = |group: &Part<'s>, (name, member): &(String, String)| {
+                let with = |group: &RowGroup<'s>, (name, member): &(String, String)| {
                     let mut group = group.clone();
                     group.keys.push((key, name.clone(), member.clone()));
                     group
@@ -175,7 +179,7 @@ impl<'a> Group<'a> {
     }
 }
 
-impl<'a> Part<'a> {
+impl<'a> RowGroup<'a> {
     /// The group for a limit of a single value: the zone of its section.
     pub fn of_section(plan: &Plan, limit: &'a Limit, unit: &Unit) -> Self {
         let zones = unit.zone.iter().filter(|_| !plan.zones.is_empty()).cloned().collect();

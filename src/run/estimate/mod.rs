@@ -14,6 +14,6 @@ mod groups;
 mod rows;
 mod table;
 
-pub use groups::{Closeness, Group, Part};
+pub use groups::{Closeness, Group, RowGroup};
 pub use rows::{Rows, TooFew, used};
 pub use table::{Member, Table, count_independent};

@@ -4,7 +4,7 @@
 
 use std::collections::BTreeSet;
 
-use super::Place;
+use super::Candidate;
 use crate::check::plan::{Plan, Side};
 use crate::data::campaign::Run;
 use crate::data::record::{Record, Wanted};
@@ -28,7 +28,7 @@ pub fn shifts(
     plan: &Plan,
     graph: &Graph,
     campaign: &Campaign,
-    places: &[(&Run, Place)],
+    places: &[(&Run, Candidate)],
 ) -> Vec<Option<Offset>> {
     let shortest =
         places.iter().map(|(_, place)| place.end - place.start).fold(f64::INFINITY, f64::min);
@@ -158,7 +158,7 @@ pub fn course(
     graph: &Graph,
     campaign: &Campaign,
     run: &Run,
-    places: &[&Place],
+    places: &[&Candidate],
     (start, end): (f64, f64),
     farthest: f64,
 ) -> Course {

@@ -22,7 +22,7 @@ use place::{Chosen, Rules, Tried};
 use signals::{Signals, Source};
 use window::Window;
 
-pub use place::{Place, is_stated};
+pub use place::{Candidate, is_stated};
 
 /// How much of a run is looked at in one piece, in lengths of the longest section with all it needs
 /// on both sides: its filters run once for all places of the piece. Longer pieces take more memory,
@@ -128,7 +128,7 @@ fn drifts(
     plan: &Plan,
     graph: &Graph,
     found: &Campaign,
-    places: &[(&Run, Place)],
+    places: &[(&Run, Candidate)],
     told: &mut FoundSections,
 ) -> Option<Vec<f64>> {
     let shifts = drift::shifts(plan, graph, found, places);
@@ -147,7 +147,7 @@ fn drifts(
             .map(|name| name.value.as_str())
             .collect();
         let of_run: Vec<_> = own.iter().map(|&at| shifts[at].clone()).collect();
-        let of_places: Vec<&Place> = own.iter().map(|&at| &places[at].1).collect();
+        let of_places: Vec<&Candidate> = own.iter().map(|&at| &places[at].1).collect();
         let extent = (plan.axis.unit.to_si(in_run.start), plan.axis.unit.to_si(in_run.end));
         let course =
             drift::course(plan, graph, found, run, &of_places, extent, drift::FARTHEST * shortest);
@@ -265,7 +265,7 @@ fn in_run(
     campaign: &Campaign,
     run: &Run,
     rules: &Rules<'_>,
-) -> Result<(Vec<Place>, FoundInRun), Problems> {
+) -> Result<(Vec<Candidate>, FoundInRun), Problems> {
     let mut windows = Windows::open(plan, graph, campaign, run)?;
     let reach = rules.reach().map_err(|reason| {
         Problems(vec![Problem::error("find-length", reason.text()).at(&run.name.span)])

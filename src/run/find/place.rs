@@ -25,7 +25,7 @@ const DIGITS: usize = 8;
 
 /// A place where a section was found.
 #[derive(Clone, Debug)]
-pub struct Place {
+pub struct Candidate {
     pub start: f64,
     pub end: f64,
     pub zone: Option<String>,
@@ -37,7 +37,7 @@ pub struct Place {
 
 #[derive(Debug)]
 pub enum Tried {
-    Fits(Place),
+    Fits(Candidate),
     /// Index into [`Rules::reasons`].
     Rejected(usize),
 }
@@ -217,7 +217,7 @@ impl<'a> Rules<'a> {
                 None => {
                     let value = self.value(signals, &columns, extent);
                     let zone = zone.map(|zone| zone.name.clone());
-                    return Tried::Fits(Place {
+                    return Tried::Fits(Candidate {
                         start: extent.0,
                         end: extent.1,
                         zone,
@@ -333,9 +333,9 @@ pub fn is_stated(plan: &Plan, find: &Find, column: usize) -> bool {
 #[derive(Debug)]
 pub struct Chosen {
     by_value: bool,
-    taken: Vec<Place>,
+    taken: Vec<Candidate>,
     /// Places that overlap, directly or through others.
-    open: Vec<Place>,
+    open: Vec<Candidate>,
     open_end: f64,
 }
 
@@ -350,7 +350,7 @@ impl Chosen {
     }
 
     /// Places come in the order of their starts.
-    pub fn add(&mut self, place: Place) {
+    pub fn add(&mut self, place: Candidate) {
         if !self.by_value {
             self.taken.push(place);
             return;
@@ -362,7 +362,7 @@ impl Chosen {
         self.open.push(place);
     }
 
-    pub fn finish(mut self) -> Vec<Place> {
+    pub fn finish(mut self) -> Vec<Candidate> {
         self.close();
         self.taken
     }
@@ -372,7 +372,7 @@ impl Chosen {
     fn close(&mut self) {
         let mut open = std::mem::take(&mut self.open);
         open.sort_by(|a, b| b.value.total_cmp(&a.value).then(a.start.total_cmp(&b.start)));
-        let mut taken: Vec<Place> = Vec::new();
+        let mut taken: Vec<Candidate> = Vec::new();
         for place in open {
             if taken.iter().all(|other| place.end <= other.start || place.start >= other.end) {
                 taken.push(place);
@@ -391,7 +391,7 @@ mod tests {
     fn taken(by_value: bool, places: &[(f64, f64, f64)]) -> Vec<(f64, f64)> {
         let mut chosen = Chosen::new(by_value);
         for &(start, end, value) in places {
-            chosen.add(Place { start, end, zone: None, columns: Vec::new(), value });
+            chosen.add(Candidate { start, end, zone: None, columns: Vec::new(), value });
         }
         chosen.finish().iter().map(|place| (place.start, place.end)).collect()
     }

@@ -1,7 +1,7 @@
 //! Found sections as a table of sections: the same columns as one that is written by hand, and the
 //! run.
 
-use super::place::{Place, is_stated};
+use super::place::{Candidate, is_stated};
 use crate::check::plan::{Datum, DatumKind, Find, Plan, Scalar};
 use crate::data::Campaign;
 use crate::data::campaign::{OFFSET, RUN_COLUMN, Run};
@@ -63,7 +63,7 @@ pub fn check_facts(plan: &Plan, find: &Find, campaign: &Campaign, problems: &mut
 /// Those of a table that is read.
 pub fn table(
     plan: &Plan,
-    places: &[(&Run, Place)],
+    places: &[(&Run, Candidate)],
     offsets: Option<&[f64]>,
 ) -> Result<Table, Problem> {
     let axis = &plan.axis.unit;

@@ -24,8 +24,9 @@ pub fn keep(
     before: Option<&Reduction>,
 ) -> Option<Reduction> {
     let keep = plan.sections.keep.as_ref()?;
-    let reduction =
-        before.cloned().unwrap_or_else(|| of(keep, &pool(plan, facts, units, values), units));
+    let reduction = before
+        .cloned()
+        .unwrap_or_else(|| reduce_units(keep, &pool(plan, facts, units, values), units));
     let left_out: HashSet<&String> = reduction.left_out.iter().collect();
     for unit in units.iter_mut().filter(|unit| left_out.contains(&unit.name)) {
         unit.refuse(Reason::LeftOutByReduction { kept: keep.words.clone() }, false);
@@ -33,7 +34,7 @@ pub fn keep(
     Some(reduction)
 }
 
-fn of(keep: &Keep, pool: &Pool, units: &[Unit]) -> Reduction {
+fn reduce_units(keep: &Keep, pool: &Pool, units: &[Unit]) -> Reduction {
     let mut groups: IndexMap<String, Vec<usize>> = IndexMap::new();
     for (at, unit) in units.iter().enumerate().filter(|(_, unit)| unit.fault.is_none()) {
         let word = |column: &usize| match unit.columns.get(*column) {

@@ -9,7 +9,7 @@ use crate::result::{
     LimitNotMet, Outside, Reason, RegressionFigure, RulePlace, Sample, Scope, StatisticResult,
     Subject, VehicleValue,
 };
-use crate::run::estimate::{Closeness, Group, Member, Part, TooFew, count_independent};
+use crate::run::estimate::{Closeness, Group, Member, RowGroup, TooFew, count_independent};
 use crate::run::sections::{Facts, Known, Limits, Unit as Section, Vehicle};
 use crate::source::Span;
 use crate::units::Unit;
@@ -20,7 +20,7 @@ const EQUAL: f64 = 1e-12;
 /// A group of rows and its estimate.
 #[derive(Debug)]
 pub struct Estimated<'a> {
-    pub part: Part<'a>,
+    pub part: RowGroup<'a>,
     pub members: Vec<Member<'a>>,
     /// In SI; `None` for limits of each value.
     pub value: Result<Option<f64>, Reason>,
@@ -35,7 +35,7 @@ pub struct Estimated<'a> {
 impl<'a> Estimated<'a> {
     /// Nothing but a value, or why there is none.
     pub fn plain(
-        part: Part<'a>,
+        part: RowGroup<'a>,
         members: Vec<Member<'a>>,
         value: Result<Option<f64>, Reason>,
     ) -> Self {
@@ -124,7 +124,7 @@ impl<'a> Judging<'a> {
     }
 
     /// `None` of a group whose vehicle the limit does not apply to.
-    fn of_part(&self, limit: &Limit, part: Part<'a>) -> Option<Estimated<'a>> {
+    fn of_part(&self, limit: &Limit, part: RowGroup<'a>) -> Option<Estimated<'a>> {
         let members = part.members.clone();
         match members.map(|members| applying(limit, self.rows.facts, members)) {
             Ok(Ok(members)) => Some(self.estimated(&limit.estimate, part, members?)),
@@ -137,7 +137,7 @@ impl<'a> Judging<'a> {
 
     /// An estimate of each of its groups, without a limit.
     pub fn of_report(&self, report: &'a Report) -> Vec<Estimated<'a>> {
-        let of_part = |part: Part<'a>| match part.members.clone() {
+        let of_part = |part: RowGroup<'a>| match part.members.clone() {
             Ok(members) => self.estimated(&report.estimate, part, members),
             Err(reason) => Estimated::plain(part, Vec::new(), Err(reason)),
         };
@@ -147,7 +147,7 @@ impl<'a> Judging<'a> {
     fn estimated(
         &self,
         estimate: &Estimate,
-        part: Part<'a>,
+        part: RowGroup<'a>,
         members: Vec<Member<'a>>,
     ) -> Estimated<'a> {
         if members.is_empty() {
@@ -214,7 +214,7 @@ impl<'a> Judging<'a> {
         let outcome = match &group.value {
             Err(reason) => Err(reason.clone()),
             Ok(None) => self.each(limit, &group.members, &mut result),
-            Ok(Some(value)) => self.one(limit, group, *value, &mut result),
+            Ok(Some(value)) => self.compare_number(limit, group, *value, &mut result),
         };
         let mut fails = None;
         match outcome {
@@ -236,7 +236,7 @@ impl<'a> Judging<'a> {
     }
 
     /// Compares one number with one limit.
-    fn one(
+    fn compare_number(
         &self,
         limit: &Limit,
         group: &Estimated<'_>,
@@ -292,7 +292,7 @@ impl<'a> Judging<'a> {
     pub fn common_bound(
         &self,
         limit: &Limit,
-        part: &Part<'_>,
+        part: &RowGroup<'_>,
         members: &[Member<'_>],
     ) -> Result<f64, Reason> {
         let (unit, facts) = (self.unit(limit), self.rows.facts);
@@ -319,7 +319,7 @@ impl<'a> Judging<'a> {
         section: &Section,
         members: &[Member<'_>],
     ) -> Result<f64, Reason> {
-        let part = Part::of_section(self.rows.plan, limit, section);
+        let part = RowGroup::of_section(self.rows.plan, limit, section);
         self.bound(limit, &part, members, &section.known(self.rows.facts))
     }
 
@@ -330,7 +330,7 @@ impl<'a> Judging<'a> {
     pub fn bound(
         &self,
         limit: &Limit,
-        part: &Part<'_>,
+        part: &RowGroup<'_>,
         members: &[Member<'_>],
         known: &Known<'_>,
     ) -> Result<f64, Reason> {
@@ -386,7 +386,7 @@ fn against(value: f64, bound: f64, at_least: bool) -> (Option<f64>, bool) {
 #[derive(Clone, Copy, Debug)]
 struct OfGroup<'a> {
     quantity: &'a Quantity,
-    part: &'a Part<'a>,
+    part: &'a RowGroup<'a>,
     /// Data of its sections can be used in a limit.
     group: Group<'a>,
     known: &'a Known<'a>,

@@ -12,7 +12,7 @@ use crate::check::plan::{
 };
 use crate::metrics::moments::{Moment, Moments};
 use crate::result::{Reason, Scope};
-use crate::run::estimate::{Group, Member, Part, Rows, used};
+use crate::run::estimate::{Group, Member, RowGroup, Rows, used};
 use crate::run::sections::{Facts, Known, Unit, Vehicle};
 use crate::run::values::{Row, SectionValues};
 
@@ -327,7 +327,7 @@ impl Making<'_> {
     /// A minimum, group by group. Where it cannot be told which rows belong to a group, no
     /// selection of sections has enough.
     fn minima(&self, minimum: &MinimumOfGroups, judging: &Judging<'_>) -> Vec<PooledMinimum> {
-        let of_part = |part: Part<'_>| {
+        let of_part = |part: RowGroup<'_>| {
             let mut signals: Vec<BTreeSet<&str>> = vec![BTreeSet::new(); self.units.len()];
             for member in part.members.unwrap_or_default() {
                 if let Some(number) = self.number(&member) {
@@ -345,7 +345,7 @@ impl Making<'_> {
         &self,
         (index, at): (usize, usize),
         judging: &Judging<'_>,
-        part: &Part<'_>,
+        part: &RowGroup<'_>,
     ) -> Option<PooledLimit> {
         let facts = judging.rows.facts;
         let limit = &judging.quantity.limits[at];

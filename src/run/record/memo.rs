@@ -27,18 +27,18 @@ enum Does {
     Negative,
     Power(i8),
     Apply(&'static str),
-    Shifted(u64, Place),
+    Shifted(u64, ExtentKey),
     Derivative { over_time: bool },
     Integral { over_time: bool },
-    Level(Place),
+    Level(ExtentKey),
     Step(Compared<StepSpec>),
-    Cut(Place),
-    Window(Compared<StepSpec>, Place),
+    Cut(ExtentKey),
+    Window(Compared<StepSpec>, ExtentKey),
     Reduce(Compared<Reducer>, Method),
 }
 
 /// The bits of the start and the end of a section; `None` of a whole record.
-type Place = Option<(u64, u64)>;
+type ExtentKey = Option<(u64, u64)>;
 
 /// A part of a key that is compared and not hashed, as it contains numbers with decimals.
 #[derive(Debug, PartialEq)]

@@ -9,7 +9,7 @@ use super::memo::{Keys, Memo, locked};
 use super::opened::{Fault, Opened, Reading};
 use super::trial::Trial;
 use crate::check::plan::Plan;
-use crate::data::campaign::{Part, ReadFile};
+use crate::data::campaign::{ReadFile, RunStretch};
 use crate::data::record::Wanted;
 use crate::data::table::Cell;
 use crate::data::{Campaign, Record, RecordKind, WhichRecord};
@@ -86,7 +86,7 @@ pub struct SectionRecords<'a> {
     /// The axis and where the section lies on it, where the campaign says so.
     place: Option<(String, Extent)>,
     /// The part of a run that is read.
-    part: Option<Part>,
+    part: Option<RunStretch>,
     trial: Trial,
     /// The records as recorded.
     base: Option<&'a SectionRecords<'a>>,
@@ -114,7 +114,7 @@ impl<'a> SectionRecords<'a> {
         campaign: &'a Campaign,
         cell: &'a Cell,
         columns: &'a Columns,
-        place: Option<(String, Extent, Option<Part>)>,
+        place: Option<(String, Extent, Option<RunStretch>)>,
     ) -> Self {
         let (place, part) =
             place.map_or((None, None), |(axis, extent, part)| (Some((axis, extent)), part));
@@ -199,7 +199,7 @@ impl<'a> SectionRecords<'a> {
         &self,
         reading: &Reading<'_>,
         wanted: &[Wanted],
-        part: Option<&Part>,
+        part: Option<&RunStretch>,
     ) -> Option<Result<Opened, Fault>> {
         if part != self.part.as_ref() {
             return None;
@@ -234,7 +234,7 @@ impl<'a> SectionRecords<'a> {
         &self,
         which: WhichRecord,
         wanted: &[Wanted],
-        part: Option<&Part>,
+        part: Option<&RunStretch>,
     ) -> Result<(Record, ReadFile), Vec<Problem>> {
         let kind = self.trial.kind(which.kind);
         let (record, file) =

@@ -221,7 +221,7 @@ impl State<'_> {
         if self.without_input(id) {
             return Ok(());
         }
-        match self.one(id) {
+        match self.evaluate(id) {
             Ok(value) => self.values[id] = Some(value),
             Err(reason) if self.asks(id) => self.failed[id] = Some(self.of_step(id, reason)),
             Err(reason) => return Err(self.of_step(id, reason)),
@@ -355,7 +355,7 @@ impl State<'_> {
         Ok(())
     }
 
-    fn one(&mut self, id: NodeId) -> Result<Signal, Reason> {
+    fn evaluate(&mut self, id: NodeId) -> Result<Signal, Reason> {
         let node = &self.graph.nodes[id];
         let input = |index: usize| self.signal(node.inputs[index]);
         match &node.operation {

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::check::plan::{Plan, Scalar};
 use crate::data::Campaigns;
-use crate::data::campaign::Part;
+use crate::data::campaign::RunStretch;
 use crate::data::table::Cell;
 use crate::result::{CheckResult, Reason};
 use crate::source::Span;
@@ -62,8 +62,8 @@ pub struct Stretch {
 
 impl Stretch {
     /// What is read.
-    pub fn part(&self, plan: &Plan) -> Part {
-        Part { axis: plan.axis.column.clone(), from: self.extent.0, to: self.extent.1 }
+    pub fn part(&self, plan: &Plan) -> RunStretch {
+        RunStretch { axis: plan.axis.column.clone(), from: self.extent.0, to: self.extent.1 }
     }
 }
 
@@ -92,8 +92,9 @@ impl Unit {
     }
 
     /// The part of a run that the section reads by itself; `None` of a whole record.
-    pub fn part(&self, plan: &Plan) -> Option<Part> {
-        self.extent.map(|extent| Part::around(&plan.axis.column, extent, plan.sections.margin))
+    pub fn part(&self, plan: &Plan) -> Option<RunStretch> {
+        self.extent
+            .map(|extent| RunStretch::around(&plan.axis.column, extent, plan.sections.margin))
     }
 
     /// Records the first reason not to use it.

@@ -22,7 +22,7 @@ use super::made::{first, read_made, unit_in};
 use super::{Section, Simulator, Task};
 use crate::data::record::RecordSource;
 use crate::data::text::LARGEST_RECORD;
-use crate::data::{Campaign, Heading, Place, RecordKind};
+use crate::data::{Campaign, CampaignPath, Heading, RecordKind};
 use crate::disk;
 use crate::effects::Signals;
 use crate::problem::{Problem, error};
@@ -202,7 +202,7 @@ impl<'a> External<'a> {
     fn read(&self, path: &Path, section: &Section) -> Result<Signals, Problem> {
         let shown = format!("{}.csv of {}", section.name(), self.program.name);
         let known = self.headings(section);
-        let made = RecordSource::File(Place {
+        let made = RecordSource::File(CampaignPath {
             path: path.to_path_buf(),
             shown: shown.clone(),
             inside: shown,

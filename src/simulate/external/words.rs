@@ -50,7 +50,7 @@ impl Hole {
 
 /// A part of a word.
 #[derive(Clone, Debug, PartialEq)]
-enum Part {
+enum WordPart {
     Text(String),
     Hole(Hole),
 }
@@ -58,7 +58,7 @@ enum Part {
 /// One word of a command.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Word {
-    parts: Vec<Part>,
+    parts: Vec<WordPart>,
 }
 
 impl Word {
@@ -108,37 +108,37 @@ impl Word {
                 return None;
             };
             if !plain.is_empty() {
-                parts.push(Part::Text(std::mem::take(&mut plain)));
+                parts.push(WordPart::Text(std::mem::take(&mut plain)));
             }
-            parts.push(Part::Hole(*hole));
+            parts.push(WordPart::Hole(*hole));
             at = end + 1;
         }
         plain.push_str(&text[at..]);
         if !plain.is_empty() || parts.is_empty() {
-            parts.push(Part::Text(plain));
+            parts.push(WordPart::Text(plain));
         }
         Some(Self { parts })
     }
 
     pub fn has(&self, hole: Hole) -> bool {
-        self.parts.contains(&Part::Hole(hole))
+        self.parts.contains(&WordPart::Hole(hole))
     }
 
     /// Whether the word is only this placeholder.
     pub fn is(&self, hole: Hole) -> bool {
-        self.parts == [Part::Hole(hole)]
+        self.parts == [WordPart::Hole(hole)]
     }
 
     /// The text of a word without placeholders.
     pub fn plain(&self) -> Option<&str> {
-        if let [Part::Text(text)] = &self.parts[..] { Some(text) } else { None }
+        if let [WordPart::Text(text)] = &self.parts[..] { Some(text) } else { None }
     }
 
     /// The word with its placeholders replaced.
     pub fn filled(&self, with: &dyn Fn(Hole) -> String) -> String {
-        let part = |part: &Part| match part {
-            Part::Text(plain) => plain.clone(),
-            Part::Hole(hole) => with(*hole),
+        let part = |part: &WordPart| match part {
+            WordPart::Text(plain) => plain.clone(),
+            WordPart::Hole(hole) => with(*hole),
         };
         self.parts.iter().map(part).collect()
     }

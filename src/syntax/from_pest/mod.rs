@@ -148,11 +148,11 @@ pub fn report(text: &Text, problems: &mut Problems) -> Option<Report> {
     Some(Report { of, unit, scope: scope_or_all(inner.next())? })
 }
 
-fn scope_or_all(part: Option<Part>) -> Option<Scope> {
+fn scope_or_all(part: Option<Parsed>) -> Option<Scope> {
     part.map_or(Some(Scope::default()), |mut part| scope(part.next()?))
 }
 
-fn scope(part: Part) -> Option<Scope> {
+fn scope(part: Parsed) -> Option<Scope> {
     let mut scope = Scope::default();
     for mut part in part {
         match part.rule {
@@ -177,7 +177,7 @@ pub fn verdict(text: &Text, problems: &mut Problems) -> Option<Verdict> {
     Some(Verdict::AtLeast { count, of_limits: inner.next()?.rule == Rule::of_limits })
 }
 
-fn over_verdicts(part: Part) -> Option<OverVerdicts> {
+fn over_verdicts(part: Parsed) -> Option<OverVerdicts> {
     let rule = part.rule;
     let mut inner = part.peekable();
     match rule {
@@ -233,13 +233,13 @@ fn is_keyword(word: &str) -> bool {
 }
 
 /// A field that is parsed with one rule. A syntax error becomes a problem at its word.
-fn parsed(rule: Rule, text: &Text, problems: &mut Problems) -> Option<Part> {
+fn parsed(rule: Rule, text: &Text, problems: &mut Problems) -> Option<Parsed> {
     if let Some(problem) = depth::too_deep(text) {
         problems.push(problem);
         return None;
     }
     match Grammar::parse(rule, &units::marked(&text.text)) {
-        Ok(mut pairs) => Some(Part::new(pairs.next()?, &Arc::new(text.clone()))),
+        Ok(mut pairs) => Some(Parsed::new(pairs.next()?, &Arc::new(text.clone()))),
         Err(error) => {
             problems.push(explain::syntax(rule, &error, text));
             None
@@ -249,27 +249,27 @@ fn parsed(rule: Rule, text: &Text, problems: &mut Problems) -> Option<Part> {
 
 /// `each zone and running gear`: a name of several words has `_` between them, as where it is
 /// declared.
-fn keys(part: Part) -> Vec<At<String>> {
+fn keys(part: Parsed) -> Vec<At<String>> {
     part.map(|key| key.at(normalised(key.written()).replace(' ', "_"))).collect()
 }
 
 /// A part of a parsed phrase with its bytes in the field's text; it gives the parts in it one by
 /// one, without the keywords.
-struct Part {
+struct Parsed {
     rule: Rule,
     text: Arc<Text>,
     range: Range<usize>,
-    inner: IntoIter<Part>,
+    inner: IntoIter<Parsed>,
 }
 
-impl Iterator for Part {
+impl Iterator for Parsed {
     type Item = Self;
     fn next(&mut self) -> Option<Self> {
         self.inner.next()
     }
 }
 
-impl Part {
+impl Parsed {
     fn new(pair: Pair<'_, Rule>, text: &Arc<Text>) -> Self {
         let (rule, start) = (pair.as_rule(), pair.as_span().start());
         let written = text.text[start..pair.as_span().end()].trim_end().len();

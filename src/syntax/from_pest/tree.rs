@@ -1,16 +1,16 @@
 //! From the pairs of pest to the tree of a phrase.
 
-use super::{Part, Rule, keys};
+use super::{Parsed, Rule, keys};
 use crate::syntax::phrase::{At, Fit, Item, Node, Number, Operator, Phrase, Pick, Step};
 use crate::units::Unit;
 
-pub(super) fn pick(part: Part) -> Pick {
+pub(super) fn pick(part: Parsed) -> Pick {
     let comma = part.written().find(',').map_or(usize::MAX, |at| part.range.start + at);
     let (words, more) = part.map(|word| word.named()).partition(|word| word.range.start < comma);
     Pick { words, more }
 }
 
-pub(super) fn step(mut part: Part) -> Option<At<Step>> {
+pub(super) fn step(mut part: Parsed) -> Option<At<Step>> {
     let mut step = Step { parts: Vec::new(), when: None };
     for mut inner in part.by_ref() {
         match inner.rule {
@@ -21,7 +21,7 @@ pub(super) fn step(mut part: Part) -> Option<At<Step>> {
     Some(part.at(step))
 }
 
-fn item(mut part: Part) -> Option<At<Item>> {
+fn item(mut part: Parsed) -> Option<At<Item>> {
     let inner = part.next()?;
     Some(part.at(match inner.rule {
         Rule::phrase_word => Item::Word(inner.written().to_string()),
@@ -29,7 +29,7 @@ fn item(mut part: Part) -> Option<At<Item>> {
     }))
 }
 
-fn number(part: &mut Part) -> Option<Number> {
+fn number(part: &mut Parsed) -> Option<Number> {
     let number: f64 = part.next()?.written().parse().ok()?;
     let Some(unit) = part.next() else { return Some(Number { value: number, unit: None }) };
     let unit = Unit::parse(unit.written()).ok()?;
@@ -38,7 +38,7 @@ fn number(part: &mut Part) -> Option<Number> {
 
 /// What is read without its neighbours: parentheses, a magnitude, a number, an end of a confidence
 /// interval, a percentile or a path.
-fn value(mut part: Part) -> Option<Phrase> {
+fn value(mut part: Parsed) -> Option<Phrase> {
     let node = match part.rule {
         Rule::parens => in_parens(&mut part)?,
         Rule::magnitude => Node::Magnitude(Box::new(sum(part.next()?)?)),
@@ -50,7 +50,7 @@ fn value(mut part: Part) -> Option<Phrase> {
     Some(part.at(node))
 }
 
-pub(super) fn cases(mut part: Part) -> Option<Phrase> {
+pub(super) fn cases(mut part: Parsed) -> Option<Phrase> {
     let first = either(part.next()?)?;
     let Some(condition) = part.next() else { return Some(first) };
     let mut arms = vec![(first, either(condition)?)];
@@ -73,8 +73,8 @@ fn binary(operator: Operator, left: Phrase, right: Phrase) -> Phrase {
 
 /// Folds `a op b op c` from the left.
 fn fold(
-    mut part: Part,
-    operand: fn(Part) -> Option<Phrase>,
+    mut part: Parsed,
+    operand: fn(Parsed) -> Option<Phrase>,
     operator: fn(&str) -> Operator,
 ) -> Option<Phrase> {
     let mut left = operand(part.next()?)?;
@@ -89,15 +89,15 @@ fn fold(
     Some(left)
 }
 
-pub(super) fn either(part: Part) -> Option<Phrase> {
+pub(super) fn either(part: Parsed) -> Option<Phrase> {
     fold(part, both, |_| Operator::Or)
 }
 
-fn both(part: Part) -> Option<Phrase> {
+fn both(part: Parsed) -> Option<Phrase> {
     fold(part, negation, |_| Operator::And)
 }
 
-fn negation(mut part: Part) -> Option<Phrase> {
+fn negation(mut part: Parsed) -> Option<Phrase> {
     let first = part.next()?;
     if first.rule == Rule::not {
         let inner = Box::new(negation(part.next()?)?);
@@ -107,7 +107,7 @@ fn negation(mut part: Part) -> Option<Phrase> {
 }
 
 /// `a <= b`, and `a <= b <= c` as `a <= b and b <= c`.
-fn comparison(part: Part) -> Option<Phrase> {
+fn comparison(part: Parsed) -> Option<Phrase> {
     let mut inner = part.peekable();
     let mut left = sum(inner.next()?)?;
     if let Some(near) = inner.next_if(|next| next.rule == Rule::near) {
@@ -140,7 +140,7 @@ fn comparison(part: Part) -> Option<Phrase> {
 }
 
 /// The condition `near b within c` after a value.
-fn near(value: Phrase, mut part: Part) -> Option<Phrase> {
+fn near(value: Phrase, mut part: Parsed) -> Option<Phrase> {
     let target = Box::new(sum(part.next()?)?);
     let next = part.next()?;
     let by_factor = next.rule == Rule::a_factor_of;
@@ -149,15 +149,15 @@ fn near(value: Phrase, mut part: Part) -> Option<Phrase> {
     Some(whole.with(Node::Near { value: Box::new(value), target, tolerance, by_factor }))
 }
 
-pub(super) fn sum(part: Part) -> Option<Phrase> {
+pub(super) fn sum(part: Parsed) -> Option<Phrase> {
     fold(part, product, |text| if text == "+" { Operator::Add } else { Operator::Subtract })
 }
 
-fn product(part: Part) -> Option<Phrase> {
+fn product(part: Parsed) -> Option<Phrase> {
     fold(part, signed, |text| if text == "/" { Operator::Divide } else { Operator::Multiply })
 }
 
-fn signed(mut part: Part) -> Option<Phrase> {
+fn signed(mut part: Parsed) -> Option<Phrase> {
     let mut first = part.next()?;
     if first.rule == Rule::minus {
         let inner = Box::new(signed(part.next()?)?);
@@ -173,7 +173,7 @@ fn signed(mut part: Part) -> Option<Phrase> {
     Some(part.at(Node::Power(Box::new(base), exponent)))
 }
 
-fn primary(mut part: Part) -> Option<Phrase> {
+fn primary(mut part: Parsed) -> Option<Phrase> {
     let mut phrase = without_suffix(part.next()?)?;
     for mut after in part.by_ref() {
         if after.rule == Rule::weighted {
@@ -191,7 +191,7 @@ fn primary(mut part: Part) -> Option<Phrase> {
 }
 
 /// A primary without `through`, `over` and `weighted` behind it.
-fn without_suffix(mut part: Part) -> Option<Phrase> {
+fn without_suffix(mut part: Parsed) -> Option<Phrase> {
     let node = match part.rule {
         Rule::extreme => {
             let which = part.next()?.named();
@@ -234,7 +234,7 @@ fn without_suffix(mut part: Part) -> Option<Phrase> {
 
 /// The estimate of a limit: the name of a statistic or estimate, a percentile, the end of an
 /// interval, or an expression in parentheses.
-pub(super) fn estimate(mut part: Part) -> Option<Phrase> {
+pub(super) fn estimate(mut part: Parsed) -> Option<Phrase> {
     let found = value(part.next()?)?;
     match part.next() {
         Some(by) => weighted(found, by),
@@ -243,7 +243,7 @@ pub(super) fn estimate(mut part: Part) -> Option<Phrase> {
 }
 
 /// What parentheses hold: an expression, or one number of it for each group.
-fn in_parens(part: &mut Part) -> Option<Node> {
+fn in_parens(part: &mut Parsed) -> Option<Node> {
     let found = cases(part.next()?)?;
     match part.next() {
         Some(mut groups) => Some(Node::ForEach(Box::new(found), keys(groups.next()?))),
@@ -252,14 +252,14 @@ fn in_parens(part: &mut Part) -> Option<Node> {
 }
 
 /// `weighted by length` after what it is a weight of.
-fn weighted(of: Phrase, mut part: Part) -> Option<Phrase> {
+fn weighted(of: Phrase, mut part: Parsed) -> Option<Phrase> {
     let by = value(part.next()?.next()?)?;
     let whole = of.to(&part.at(()), ());
     Some(whole.with(Node::Weighted(Box::new(of), Box::new(by))))
 }
 
 /// The end of a confidence interval: `upper 95 % of std by bootstrap`.
-fn bound_of(part: &mut Part) -> Option<Node> {
+fn bound_of(part: &mut Parsed) -> Option<Node> {
     let mut inner = part.filter(|part| part.rule != Rule::of);
     let upper = inner.next()?.written() == "upper";
     let confidence = number(&mut inner.next()?)?.value;
@@ -274,7 +274,7 @@ fn bound_of(part: &mut Part) -> Option<Node> {
 }
 
 /// A regression: `prediction over radius, speed at 300 m, 80 km/h, confidence 99 %`.
-fn fit(part: &mut Part) -> Option<Fit> {
+fn fit(part: &mut Parsed) -> Option<Fit> {
     let mut fit = Fit {
         prediction: part.next()?.written() == "prediction",
         over: Vec::new(),
