@@ -63,16 +63,21 @@ fn written<T: Serialize>(
     Ok((format!("{name}.csv"), bytes))
 }
 
+/// Numbers without the exponent that JSON has; the entries of a list with `;` between them.
+fn text(value: &Value) -> String {
+    match value {
+        Value::Null => String::new(),
+        Value::String(text) => text.clone(),
+        Value::Array(all) => all.iter().map(text).collect::<Vec<_>>().join("; "),
+        Value::Number(number) if number.is_f64() => number.as_f64().unwrap_or_default().to_string(),
+        other => other.to_string(),
+    }
+}
+
 /// A value as a cell that a spreadsheet does not interpret as a formula: such text gets an
 /// apostrophe in front, the spreadsheets' own mark of text (OWASP, CSV Injection).
 fn cell(value: &Value) -> String {
-    let text = match value {
-        Value::Null => String::new(),
-        Value::String(text) => text.clone(),
-        Value::Array(all) => all.iter().map(cell).collect::<Vec<_>>().join("; "),
-        Value::Number(number) if number.is_f64() => number.as_f64().unwrap_or_default().to_string(),
-        other => other.to_string(),
-    };
+    let text = text(value);
     let formula =
         text.starts_with(['=', '+', '-', '@', '\t', '\r', '\n']) && text.parse::<f64>().is_err();
     if formula { format!("'{text}") } else { text }
@@ -296,7 +301,7 @@ fn of_offsets(found: &SyncStudy) -> Result<Vec<File>, csv::Error> {
     let offset = |at: &AtOffset| json!({"offset": at.offset.value()});
     let all = || found.offsets.iter();
     let offsets = all().map(|of| {
-        let reason = of.selections.counted().err().map(|reason| String::from(reason.text()));
+        let reason = of.selections.counted().err().map(|reason| reason.text());
         Entry { of, more: json!({"offset": of.offset.value(), "reason": reason}) }
     });
     let spreads = all().filter(|at| at.selections.counted().is_ok()).flat_map(|at| {
@@ -390,7 +395,7 @@ fn by_size(of: &Sensitivity) -> impl Iterator<Item = impl Serialize> {
         let more = json!({
             "size": size, "rms_change": of.values.get(at), "largest": of.largest.get(at),
             "verdicts_changed": of.verdicts_changed.get(at),
-            "reason": reason.map(|reason| String::from(reason.text())),
+            "reason": reason.map(|reason| reason.text()),
         });
         Entry { of, more }
     })
