@@ -29,7 +29,7 @@ pub fn over_all(
 ) -> OverAll {
     let mut without = |row: u32, column: u32| {
         let none = || Fails::new(halves.rows.count, halves.columns.count);
-        undefined.get_or_insert_with(none).one(row, column);
+        undefined.get_or_insert_with(none).fail(row, column);
     };
     match measure.parts(halves) {
         Parts::Pooled => {
@@ -59,7 +59,7 @@ pub fn over_all(
                     match (*r).into_iter().chain(*c).reduce(f64::max) {
                         None => without(row as u32, column as u32),
                         Some(value) if !measure.holds(sign * value) => {
-                            fails.one(row as u32, column as u32);
+                            fails.fail(row as u32, column as u32);
                             failing += 1;
                         }
                         Some(_) => {}
@@ -130,7 +130,7 @@ fn mark<T>(
     for (row, of_row) in rows.iter().enumerate() {
         for (column, of_column) in columns.iter().enumerate() {
             if lacks(of_row, of_column) {
-                undefined.one(row as u32, column as u32);
+                undefined.fail(row as u32, column as u32);
             }
         }
     }

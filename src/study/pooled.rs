@@ -166,7 +166,7 @@ impl Pooled {
                 match of_row[of_column as usize] {
                     Some(true) => {}
                     Some(false) => {
-                        fails.one(row as u32, column as u32);
+                        fails.fail(row as u32, column as u32);
                         failing += 1;
                     }
                     None => without(row as u32, column as u32),

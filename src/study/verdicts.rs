@@ -110,7 +110,7 @@ impl Verdicts {
         for row in 0..self.any.rows {
             for column in 0..self.any.columns {
                 if usize::from(self.counts[row * self.any.columns + column]) > allowed {
-                    self.any.one(row as u32, column as u32);
+                    self.any.fail(row as u32, column as u32);
                 }
             }
         }

@@ -51,7 +51,7 @@ pub fn multiples(matrix: &Matrix<'_>, lines: &[Line<'_>], zones: &Zones) -> Stri
         for (column, cell) in line.cells.iter().enumerate() {
             if let Some(cell) = cell {
                 let left = column as f64 * width;
-                one(&mut canvas, *cell, &marks, (left + AXIS, left + width - 4.0), top + HEAD);
+                panel(&mut canvas, *cell, &marks, (left + AXIS, left + width - 4.0), top + HEAD);
             }
         }
     }
