@@ -133,7 +133,7 @@ pub struct Share {
     pub validated_of_all: Option<u64>,
     /// Why there is no such number.
     #[serde(flatten, with = "told::reason", skip_serializing_if = "Option::is_none")]
-    #[schemars(with = "told::NoneOrReason<Reason>")]
+    #[schemars(with = "Option<told::OneReason<Reason>>")]
     pub reason: Option<Reason>,
     #[serde(rename = "share_validated")]
     pub share: f64,
