@@ -152,7 +152,14 @@ fn limits_that_the_vehicle_doubles_are_told_with_the_reason() {
     let statistic = &found.results()["quantities"][8]["statistics"][0];
     assert_eq!(
         statistic["factors"],
-        serde_json::json!([{"by": 2.0, "because": "vehicle category is freight"}])
+        serde_json::json!([{
+            "by": 2.0,
+            "because": "vehicle category is freight",
+            "because_data": {
+                "code": "vehicle-data",
+                "data": [{"name": "Vehicle category", "value": "freight", "unit": null}],
+            },
+        }])
     );
     let (rigid, _) = told("secondary_suspension: true", "secondary_suspension: false");
     assert_eq!(
