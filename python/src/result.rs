@@ -172,7 +172,7 @@ impl Result {
 
     /// All tables of the report by name.
     fn tables(&self, py: Python<'_>) -> PyResult<Vec<(String, Table)>> {
-        let all = tables::tables(&self.found).map_err(|error| {
+        let all = tables::certification(&self.found).map_err(|error| {
             raised(py, &Problems(vec![Problem::error("table", error.to_string())]))
         })?;
         Ok(all

@@ -90,7 +90,7 @@ impl Checker<'_> {
         positions: &[Position],
         chain: &[Step],
     ) -> Option<Compared> {
-        let over_name = over.as_ref().and_then(|over| bare_word(&over)).map(str::to_string);
+        let over_name = over.as_ref().and_then(|over| bare_word(over)).map(str::to_string);
         let over = match over {
             None => Vec::new(),
             Some(over) => positions

@@ -252,7 +252,7 @@ impl Set {
     ) -> io::Result<Vec<String>> {
         let changed = |path: &str, hash: Option<&String>| {
             let before = || read(&self.folder.join(path), LARGEST_SIGNED).ok();
-            !hash.is_some_and(|hash| before().is_some_and(|bytes| *hash == sha256(&bytes)))
+            hash.is_none_or(|hash| before().is_none_or(|bytes| *hash != sha256(&bytes)))
         };
         let written = self.paths.iter().zip(&self.hashes).map(|(path, hash)| (path, Some(hash)));
         let mut outdated = Vec::new();

@@ -260,14 +260,14 @@ fn headers<'a>(
     Ok(Headers { names, units })
 }
 
-/// The values of a column, and whether they are times; `None` for texts.
+/// The values of a column, and whether they are times.
+type Numbers = (Vec<f64>, bool);
+
+/// The numbers of a column; `None` for texts.
 ///
 /// # Errors
 /// A text among numbers, with its row.
-fn values(
-    options: &Options,
-    cells: &[Option<&Cell>],
-) -> Result<Option<(Vec<f64>, bool)>, (usize, String)> {
+fn values(options: &Options, cells: &[Option<&Cell>]) -> Result<Option<Numbers>, (usize, String)> {
     let there = || cells.iter().flatten();
     if there().next().is_none_or(|first| first.text().is_some()) {
         let texts: Vec<&str> =

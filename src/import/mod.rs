@@ -151,14 +151,14 @@ fn sections(import: Import<'_>, outputs: &mut Outputs) -> Result<Imported, Probl
 /// A record without its columns, and its bytes.
 type Written = (Made, Vec<u8>);
 
+/// The record of a section, or why it cannot be imported.
+type OfSection = Result<Written, Vec<Problem>>;
+
 impl Import<'_> {
     /// The records of the sections in a file.
-    fn work(
-        self,
-        job: &Job<'_>,
-    ) -> Result<(SourceFile, Vec<Result<Written, Vec<Problem>>>), Vec<Problem>> {
+    fn work(self, job: &Job<'_>) -> Result<(SourceFile, Vec<OfSection>), Vec<Problem>> {
         let file = self.file(job.side, &job.path)?;
-        let written = |section: &&str| -> Result<Written, Vec<Problem>> {
+        let written = |section: &&str| -> OfSection {
             let made = self.record(job.side, section, &file, None)?;
             let bytes = record_bytes(&made.columns, self.format)?;
             Ok((Made { columns: Vec::new(), ..made }, bytes))

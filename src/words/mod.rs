@@ -209,7 +209,7 @@ mod tests {
             let fields: BTreeSet<&str> =
                 example.as_object().expect("fields").keys().map(String::as_str).collect();
             // An option without a value is a field all the same.
-            for name in template.undeclared_variables(false) {
+            for name in template.undeclared_variables(false).into_iter().collect::<BTreeSet<_>>() {
                 assert!(fields.contains(name.as_str()), "{code} has no {name}");
             }
             let rendered = template.render(match example {

@@ -1,6 +1,6 @@
 //! Looks into the document of a report.
 
-use fishplate::report::document::{Block, Document, Figure, Medium, Part, Table};
+use fishplate::report::document::{Block, Document, Figure, Medium, Table, Topic};
 use fishplate::report::view;
 use fishplate::result::Certification;
 
@@ -32,7 +32,7 @@ pub fn row(table: &Table, at: usize) -> Vec<String> {
 }
 
 /// The quantities that have a part of their own.
-pub fn parts(document: &Document) -> Vec<&Part> {
+pub fn parts(document: &Document) -> Vec<&Topic> {
     document
         .blocks()
         .into_iter()
@@ -56,7 +56,7 @@ pub fn figures(document: &Document) -> Vec<&Figure> {
 }
 
 /// The document of one quantity alone.
-pub fn of_part(part: &Part) -> Document {
+pub fn of_part(part: &Topic) -> Document {
     let blocks = part.opening.iter().chain(&part.blocks).cloned().collect();
     Document {
         title: part.title.clone(),

@@ -310,7 +310,7 @@ fn regressions_outside_their_data_are_told() {
     assert!(
         told[0].first.text().to_string().contains(&says),
         "{} without {says}",
-        told[0].first.text().to_string()
+        told[0].first.text()
     );
     let groups = "(zone 4, wheelset 1; zone 4, wheelset 2; zone 4, wheelset 3; zone 4, wheelset 4)";
     assert!(

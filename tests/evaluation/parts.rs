@@ -11,7 +11,7 @@ use crate::common::program::{Ran, files, fishplate, program};
 use fishplate::data::Campaign;
 use fishplate::problem::Problems;
 use fishplate::run::{Settings, Shard};
-use fishplate::values::{self, Part, Values};
+use fishplate::values::{self, ReduceJob, Values};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -290,7 +290,8 @@ fn tiny_values(shard: Shard) -> (fishplate::certify::Compiled, Values) {
         overrides: Default::default(),
         found: Vec::new(),
     };
-    let values = values::reduce(&opened, Part { shard, plots: true }, &|_| {}).expect("reduced");
+    let values =
+        values::reduce(&opened, ReduceJob { shard, plots: true }, &|_| {}).expect("reduced");
     (opened.compiled, values)
 }
 

@@ -255,8 +255,11 @@ fn missing(recording: &Recording<'_>, maps: &[ChannelMap]) -> (Vec<Problem>, Vec
         .partition(|problem| problem.severity == Severity::Error)
 }
 
-/// The channels that are matched with the track: the table of each, its values and their unit.
-fn matched(recording: &Recording<'_>) -> Result<Vec<(usize, (Vec<f64>, Unit))>, Problem> {
+/// The table of a channel, its values and their unit.
+type InTable = (usize, (Vec<f64>, Unit));
+
+/// The channels that are matched with the track.
+fn matched(recording: &Recording<'_>) -> Result<Vec<InTable>, Problem> {
     let values = |map: &ChannelMap| {
         let stated = map.written_in.as_ref().map(|unit| unit.value.clone());
         let target = stated

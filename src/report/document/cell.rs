@@ -93,7 +93,7 @@ impl Cell {
 
     /// A sentence as written; its numbers and units are printed as in tables.
     pub fn sentence(sentence: impl Into<String>) -> Self {
-        Self::text(number::raised(&sentence.into()))
+        Self::text(number::raised(sentence.into()))
     }
 
     /// The symbol of a quantity, and its title if that is not beside it.

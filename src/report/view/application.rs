@@ -61,7 +61,7 @@ fn says(result: &DomainResult) -> String {
         [] => String::new(),
         names => format!(" Sections without a value: {}.", names.join(", ")),
     };
-    number::formula(&format!("{counted}{left_out}"))
+    number::formula(format!("{counted}{left_out}"))
 }
 
 fn table(result: &DomainResult) -> Table {

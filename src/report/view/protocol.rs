@@ -17,7 +17,7 @@ pub fn chapter(protocol: &ProtocolInfo) -> Chapter {
         ("Hash", hash.into()),
     ])])];
     if !protocol.notes.is_empty() {
-        blocks.push(Block::list(protocol.notes.iter().map(|note| number::raised(note))));
+        blocks.push(Block::list(protocol.notes.iter().map(number::raised)));
     }
     if protocol.files.len() > 1 || !protocol.deviations.is_empty() {
         blocks.push(Block::heading("Deviations from the parent protocol"));

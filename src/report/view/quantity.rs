@@ -28,7 +28,7 @@ fn part(at: usize, quantity: &QuantityResult, view: &View<'_>) -> Topic {
         Block::Facts(definition(quantity, view.work)),
     ];
     if !quantity.notes.is_empty() {
-        opening.push(Block::list(quantity.notes.iter().map(|note| number::raised(note))));
+        opening.push(Block::list(quantity.notes.iter().map(number::raised)));
     }
     let statistics = statistics(quantity, rows);
     let (mut on_paper, mut on_screen) = (Vec::new(), Vec::new());

@@ -77,7 +77,7 @@ fn table(
     let reason = |one: &&Reported| {
         let title = capital(&number::formula(&one.title));
         let reason = one.reason.as_ref()?;
-        Some(number::raised(&format!("{title}, {}: {}", one.scope, reason.text())))
+        Some(number::raised(format!("{title}, {}: {}", one.scope, reason.text())))
     };
     let head = |(title, condition, unit): &Estimate<'_>| {
         let condition = condition.map(|condition| format!(", {}", number::formula(condition)));

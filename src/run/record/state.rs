@@ -339,9 +339,9 @@ impl State<'_> {
                 match percentiles(&samples.values, &percents, self.plan.sections.percentiles) {
                     Ok(values) => values,
                     Err(error) => {
-                        members
-                            .iter()
-                            .for_each(|(id, _)| self.failed[*id] = Some(Reason::method(&error)));
+                        for (id, _) in &members {
+                            self.failed[*id] = Some(Reason::method(error));
+                        }
                         continue;
                     }
                 };

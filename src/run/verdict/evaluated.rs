@@ -66,7 +66,7 @@ impl Basis {
             missing.push(unit.name.clone());
         }
         let missing = (!missing.is_empty())
-            .then(|| Reason::ValuesOfSectionsMissing { sections: missing, total: units.len() });
+            .then_some(Reason::ValuesOfSectionsMissing { sections: missing, total: units.len() });
         let values: Vec<SectionValues> =
             values.into_iter().map(Option::unwrap_or_default).collect();
         let copies = copies::find(plan, &units, &values);

@@ -79,7 +79,7 @@ fn in_curves(check: impl Fn(&Vehicle, &Steady, f64, f64, f64)) {
 #[test]
 fn vertical_forces_carry_the_weight() {
     in_curves(|vehicle, steady, kappa, lift, _| {
-        let expected = total_mass(&vehicle) * (G + lift);
+        let expected = total_mass(vehicle) * (G + lift);
         let sum: f64 = steady.q.iter().sum();
         assert!((sum - expected).abs() < 1.0, "kappa {kappa}: {sum} N, not {expected}");
     });
@@ -91,14 +91,14 @@ fn vertical_forces_carry_the_weight() {
 #[test]
 fn guiding_forces_balance_the_uncompensated_acceleration() {
     in_curves(|vehicle, steady, kappa, _, uncompensated| {
-        let expected = -total_mass(&vehicle) * uncompensated;
+        let expected = -total_mass(vehicle) * uncompensated;
         let sum: f64 = steady.y.iter().sum();
         assert!((sum - expected).abs() < 2.0, "kappa {kappa}: {sum} N, not {expected}");
         for bogie in 0..2 {
             let wheelset = |j: usize| steady.y[j] + steady.y[4 + j];
             let mean = (wheelset(2 * bogie) + wheelset(2 * bogie + 1)) / 2.0;
             let share = expected / 4.0;
-            let tolerance = 0.015 * total_mass(&vehicle) / 4.0 * 0.1 * G + 0.05 * share.abs();
+            let tolerance = 0.015 * total_mass(vehicle) / 4.0 * 0.1 * G + 0.05 * share.abs();
             assert!(
                 (mean - share).abs() < tolerance,
                 "kappa {kappa} bogie {bogie}: {mean} N a wheelset, not {share}"

@@ -20,7 +20,7 @@ mod steps;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use fishplate::data::Place as FilePlace;
+use fishplate::data::CampaignPath;
 use fishplate::data::record::RecordSource;
 use fishplate::effects::Signals;
 use fishplate::simulate::signals_of;
@@ -114,7 +114,7 @@ impl Place {
 #[track_caller]
 fn signals(path: &Path) -> Signals {
     let place =
-        FilePlace { path: path.to_path_buf(), shown: "record".into(), inside: "record".into() };
+        CampaignPath { path: path.to_path_buf(), shown: "record".into(), inside: "record".into() };
     signals_of(&RecordSource::File(place))
         .unwrap_or_else(|problems| panic!("{}: {problems:?}", path.display()))
         .0
