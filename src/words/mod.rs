@@ -147,7 +147,7 @@ mod tests {
         "{\"code\": \"no-value\"}",
         "{\"code\": \"said\", \"says\": \"word\"}",
         "\"section\"",
-        "[{\"name\": \"a\", \"value\": \"1\", \"unit\": \"m\", \"by\": -1.5, \"verdict\": \"a\", \"word\": \"b\", \"zone\": \"1\", \"used\": 2, \"section\": \"S\", \"reason\": \"c\"}]",
+        "[{\"name\": \"a\", \"value\": \"1\", \"unit\": \"m\", \"by\": -1.5, \"verdict\": \"a\", \"word\": \"b\", \"zone\": \"1\", \"used\": 2, \"section\": \"S\", \"reason\": \"c\", \"title\": \"a\", \"default\": \"2\", \"set_by\": \"campaign\", \"records\": \"a\", \"campaign\": \"b\", \"offset\": 1.5, \"channels\": [\"Y\"]}]",
         "[{\"vehicle\": \"a\", \"value\": {\"code\": \"si\", \"value\": 2.0}}]",
         "[]",
     ];
