@@ -11,7 +11,7 @@ pub struct Block<'a> {
     /// Number of rows before this block.
     pub first_row: usize,
     pub rows: usize,
-    /// As in [`Record::columns`], with the values of these rows.
+    /// As in [`super::Record::columns`], with the values of these rows.
     pub columns: &'a [Column],
     /// First and last byte of a text; of a Parquet file nothing.
     pub bytes: (u64, u64),

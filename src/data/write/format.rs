@@ -76,7 +76,7 @@ pub fn record(format: Format, columns: &[OutColumn<'_>]) -> Result<Vec<u8>, Prob
 /// The bytes of a file with these columns.
 ///
 /// # Errors
-/// As [`parquet`].
+/// As [`parquet()`].
 pub fn in_format(format: Format, columns: &[FileColumn]) -> Result<Vec<u8>, Problem> {
     match format {
         Format::Csv => Ok(csv(columns)),
