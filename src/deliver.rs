@@ -6,7 +6,7 @@ use std::thread;
 
 use crate::diagnose::Outcome;
 use crate::problem::{Problem, Problems};
-use crate::provenance::carried::REPORT_PDF;
+use crate::provenance::carried::{REPORT_HTML, REPORT_PDF};
 use crate::provenance::statement;
 use crate::report::document::Document;
 use crate::report::pdf::Attachment;
@@ -29,8 +29,6 @@ impl Reports {
     pub const ALL: Self = Self { pdf: true, html: true };
     pub const NONE: Self = Self { pdf: false, html: false };
 }
-
-const REPORT_HTML: &str = "report.html";
 
 /// # Errors
 /// A table, a template or a text cannot be written.

@@ -25,6 +25,7 @@ mod sections;
 mod sign;
 mod simulate;
 mod simulator;
+mod sources;
 mod study;
 mod values;
 mod verify;

@@ -1,12 +1,15 @@
 //! `fishplate verify` and `fishplate trace`.
 
 use super::kit::*;
+use super::sources::imported_again;
 use crate::check::family::Family;
+use crate::deliver::{self, Reports};
 use crate::provenance::carried::{self, Carried};
 use crate::provenance::signature;
 use crate::provenance::trace::{Asked, trace};
 use crate::provenance::verify::{Again, Check, Outcome, against, alone, of_as_many};
 use crate::report::visible::visible;
+use crate::result::Certification;
 
 #[derive(Debug, Args)]
 pub struct Verify {
@@ -25,6 +28,13 @@ pub struct Verify {
     /// The protocol, if the report does not contain it; its SHA-256 must be the one in the results.
     #[arg(long, short)]
     protocol: Option<String>,
+    /// Only the report is to be checked: what needs the campaign, and was not checked, is no failure.
+    #[arg(long)]
+    report_only: bool,
+    /// Folder of the mapping by which the campaign was imported: the records are imported again from
+    /// their sources, and compared.
+    #[arg(long, value_name = "DIR", requires = "campaigns")]
+    sources: Option<PathBuf>,
     /// Print every difference, not only the first of each kind.
     #[arg(long)]
     all: bool,
@@ -54,26 +64,44 @@ impl Verify {
             of_as_many(&carried, &self.campaigns)?;
         }
         let key = self.public_key.as_deref().map(signature::public_key).transpose()?;
-        let signed = signature::check(&carried.path, self.signature.as_deref(), key.as_ref())?;
+        let signed = carried
+            .signed()
+            .iter()
+            .map(|path| signature::check(path, self.signature.as_deref(), key.as_ref()))
+            .collect::<Result<Vec<_>, _>>()?;
         let (mut checks, compiled) = alone(&carried, given.as_ref());
-        checks.push(signed);
-        if !self.campaigns.is_empty() {
+        checks.extend(signed);
+        if self.campaigns.is_empty() {
+            checks.push(Check::not_checked(
+                "pages, findings, names",
+                "give the campaign to compare them with it",
+            ));
+        } else {
+            let make = |found: &Certification, [pdf, html]: [bool; 2]| {
+                deliver::certification(found, Reports { pdf, html })
+            };
             let found = console.with_progress(carried.results.sections.len(), |progress| {
-                let again = Again { campaigns: &self.campaigns, plots: self.plots, progress };
+                let (campaigns, plots) = (&self.campaigns, self.plots);
+                let again = Again { campaigns, plots, make: &make, progress };
                 against(&carried, compiled.as_ref(), again)
             });
             checks.extend(found);
+        }
+        if let Some(sources) = &self.sources {
+            for folder in &self.campaigns {
+                checks.push(imported_again(folder, sources)?);
+            }
         }
         let any = |outcome: Outcome| checks.iter().any(|check| check.outcome == outcome);
         let exit = match (any(Outcome::Differs), any(Outcome::NotPossible)) {
             (true, _) => Exit::DoesNotHold,
             (false, true) => Exit::Unfinished,
+            (false, false) if any(Outcome::NotChecked) && !self.report_only => Exit::DoesNotHold,
             (false, false) => Exit::Done,
         };
         if !console.quiet || exit != Exit::Done {
             let most = if self.all { usize::MAX } else { MOST };
-            let with_campaign = !self.campaigns.is_empty();
-            console.print(&told(&carried, &checks, with_campaign, most, console.color))?;
+            console.print(&told(&carried, &checks, most, console.color))?;
         }
         Ok(exit)
     }
@@ -94,7 +122,7 @@ fn open(
 }
 
 /// The result for the terminal. Control characters in names of a report are made visible.
-fn told(carried: &Carried, checks: &[Check], campaign: bool, most: usize, color: bool) -> String {
+fn told(carried: &Carried, checks: &[Check], most: usize, color: bool) -> String {
     let results = &carried.results;
     let mut out = format!(
         "{}\n  campaign   {}\n  protocol   {}, SHA-256 {}\n  verdict    {}, by fishplate {}\n\n",
@@ -109,7 +137,7 @@ fn told(carried: &Carried, checks: &[Check], campaign: bool, most: usize, color:
         let (word, paint) = match check.outcome {
             Outcome::Agrees => ("agrees", "\u{1b}[32m"),
             Outcome::Differs => ("DIFFERS", "\u{1b}[31;1m"),
-            Outcome::NotChecked => ("not checked", ""),
+            Outcome::NotChecked | Outcome::NotAsked => ("not checked", ""),
             Outcome::NotPossible => ("NOT POSSIBLE", "\u{1b}[31;1m"),
         };
         let word = format!("{word:<13}");
@@ -132,20 +160,15 @@ fn told(carried: &Carried, checks: &[Check], campaign: bool, most: usize, color:
             .collect();
         found.join(", ")
     };
-    let (differ, open) = (named(Outcome::Differs), named(Outcome::NotPossible));
-    out += "\n";
-    out += &match (differ.is_empty() && open.is_empty(), campaign) {
-        (false, _) if differ.is_empty() => {
-            format!("Result: the check could not be completed ({open})\n")
-        }
-        (false, _) => format!("Result: differs ({differ})\n"),
-        (true, true) => "Result: everything checked agrees\n".to_string(),
-        (true, false) => {
-            "Result: the report is consistent; give its campaign to check it against the data\n"
-                .to_string()
-        }
+    let [differ, open, left] =
+        [Outcome::Differs, Outcome::NotPossible, Outcome::NotChecked].map(named);
+    let result = match (differ.as_str(), open.as_str(), left.as_str()) {
+        ("", "", "") => "everything checked agrees".to_string(),
+        ("", "", left) => format!("what was checked agrees; not checked: {left}"),
+        ("", open, _) => format!("the check could not be completed ({open})"),
+        (differ, ..) => format!("differs ({differ})"),
     };
-    out
+    out + &format!("\nResult: {result}\n")
 }
 
 #[derive(Debug, Args)]

@@ -18,7 +18,7 @@ pub use facts::Fact;
 pub use files::Inputs;
 pub use layout::POINT_KEY;
 pub use members::{RecordKind, WhichRecord};
-pub use opening::ReadFile;
+pub use opening::{Changed, ReadFile};
 pub use records::OFFSET;
 pub use runs::{OnDrift, RUN_COLUMN, RUNS, Run, RunFact, RunStretch};
 
@@ -27,12 +27,13 @@ use super::folder::{Folder, check_file_name};
 use super::identification::{Report, Stated};
 use super::origin::Origin;
 use super::place::CampaignPath;
+use super::record::Format;
 use super::table::{Cell, Table};
 use crate::disk;
 use crate::problem::{Problem, Problems, error, problem};
 use crate::source::{Source, Spanned};
 use crate::yaml::{Key, Node, Value};
-use layout::Layout;
+use layout::{Edited, Layout};
 use members::RecordFolder;
 use opening::{Opening, Reader};
 
@@ -70,6 +71,8 @@ pub struct Campaign {
     pub protocol: Option<Spanned<String>>,
     /// Origin of the simulated records, if they were written by a program.
     pub origin: Option<Origin>,
+    /// Records that were changed after their import.
+    edited: Vec<Edited>,
     /// The whole vehicle file; an empty map if the campaign has none. Of several states the first:
     /// who needs one vehicle asks [`Campaign::one_vehicle`].
     pub vehicle: Node,
@@ -198,6 +201,7 @@ impl Campaign {
         if let Some(table) = &layout.sections {
             runs::check_column(table, &runs, problems);
         }
+        check_edited(&layout.edited, layout.origin.as_ref(), problems);
         let name = layout.name.map(|name| name.value).unwrap_or_default();
         let mut vehicles = layout.vehicles.unwrap_or_default();
         if vehicles.is_empty() {
@@ -215,6 +219,7 @@ impl Campaign {
             report: report.unwrap_or_default().0,
             protocol: layout.protocol,
             origin: layout.origin,
+            edited: layout.edited,
             vehicle: vehicles[0].data.clone(),
             vehicles,
             names: Vec::new(),
@@ -287,5 +292,20 @@ impl Campaign {
     /// `path-outside`, `path-invalid`.
     pub fn place(&self, written: &Spanned<String>) -> Result<CampaignPath, Problem> {
         self.folder.place(&written.value, &written.span)
+    }
+}
+
+/// Records that are said to be edited must be ones that the import wrote, where it wrote some of
+/// their side.
+fn check_edited(edited: &[Edited], origin: Option<&Origin>, problems: &mut Problems) {
+    let Some(imported) = origin.and_then(|origin| origin.imported.as_ref()) else { return };
+    for Spanned { value, span } in edited.iter().map(|edited| &edited.record) {
+        let Some((side, name)) = value.split_once('/') else { continue };
+        let Some(names) = imported.written.get(side) else { continue };
+        if !names.keys().any(|known| Format::stem(known) == Format::stem(name)) {
+            let problem = problem!("unknown-record", span, "no import wrote a record `{value}`");
+            problems
+                .push(problem.suggest(value, names.keys().map(|name| format!("{side}/{name}"))));
+        }
     }
 }

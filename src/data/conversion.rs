@@ -125,8 +125,8 @@ fn name_converted(runs: &mut Node, pairs: &[Pair]) {
     }
 }
 
-/// The origin with the converted records in place of those to which the simulation was fitted:
-/// `certify` recognises them by their hash.
+/// The origin with the converted records in place of those to which the simulation was fitted and of
+/// those that an import wrote: `certify` recognises them by their hash.
 fn fitted(text: String, pairs: &[Pair]) -> String {
     let Ok(mut origin) = serde_yaml::from_str::<serde_yaml::Value>(&text) else { return text };
     let files = origin.get_mut("fitted to").and_then(serde_yaml::Value::as_sequence_mut);
@@ -137,6 +137,19 @@ fn fitted(text: String, pairs: &[Pair]) -> String {
         if let (Some(Pair { after, .. }), Some(file)) = (pair, file.as_mapping_mut()) {
             file.insert("path".into(), after.0.as_str().into());
             file.insert("sha256".into(), after.1.as_str().into());
+            changed = true;
+        }
+    }
+    let sides = origin.get_mut("written").and_then(serde_yaml::Value::as_mapping_mut);
+    for (side, names) in sides.into_iter().flatten() {
+        let (Some(side), Some(names)) = (side.as_str(), names.as_mapping_mut()) else { continue };
+        for Pair { before, after } in pairs {
+            let name = |path: &str| path.strip_prefix(side)?.strip_prefix('/').map(str::to_string);
+            let (Some(old), Some(new)) = (name(&before.0), name(&after.0)) else { continue };
+            // That of a record that was changed before stays another one.
+            let Some(hash) = names.remove(old.as_str()) else { continue };
+            let same = hash.as_str() == Some(before.1.as_str());
+            names.insert(new.into(), if same { after.1.as_str().into() } else { hash });
             changed = true;
         }
     }
@@ -157,5 +170,13 @@ mod tests {
         let expected = "sources:\n- path: m/S.csv\n  sha256: aa\nfitted to:\n- path: m/S.parquet\n  sha256: '12e4'\n- path: m/T.csv\n  sha256: cc\n";
         assert_eq!(fitted(text.to_string(), &[pair]), expected);
         assert_eq!(fitted("effects: []\n".to_string(), &[]), "effects: []\n");
+        let pair = |name: &str, hash: &str| Pair {
+            before: (format!("m/{name}.csv"), "aa".into()),
+            after: (format!("m/{name}.parquet"), hash.into()),
+        };
+        let text = "written:\n  m:\n    S.csv: aa\n    T.csv: cc\n    U.csv: dd\n";
+        let expected = "written:\n  m:\n    U.csv: dd\n    S.parquet: ee\n    T.parquet: cc\n";
+        let pairs = [pair("S", "ee"), pair("T", "ff")];
+        assert_eq!(fitted(text.to_string(), &pairs), expected, "T was changed before");
     }
 }

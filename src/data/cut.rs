@@ -140,7 +140,9 @@ fn rest(
     let named = named.map(|place| place.inside);
     for (inside, bytes) in campaign.plain_files()? {
         let made = [CAMPAIGN_FILE, TABLE, SECTIONS].contains(&inside.as_str());
-        if !made && Some(&inside) != named.as_ref() {
+        if inside == ORIGIN_FILE {
+            outputs.add(&inside, origin_of_parts(&bytes).as_bytes())?;
+        } else if !made && Some(&inside) != named.as_ref() {
             outputs.add(&inside, &bytes)?;
         }
     }
@@ -156,6 +158,16 @@ fn rest(
     let without = [KEY, ORIGIN_KEY, RUNS, "sections"];
     let text = campaign_yaml_with(&campaign.tree, &without, &entries);
     outputs.add(CAMPAIGN_FILE, text.as_bytes())
+}
+
+/// The origin without the hashes of whole records.
+fn origin_of_parts(bytes: &[u8]) -> String {
+    let text = String::from_utf8_lossy(bytes).into_owned();
+    let Ok(mut origin) = serde_yaml::from_str::<serde_yaml::Mapping>(&text) else { return text };
+    match origin.remove("written") {
+        Some(_) => serde_yaml::to_string(&origin).unwrap_or(text),
+        None => text,
+    }
 }
 
 /// The table of sections with what the campaign says of each run, without the run.

@@ -12,6 +12,7 @@
 //! | `record/source` | where a record is: the one place from which campaigns read records |
 //! | `conversion` | a copy of a campaign with its records in another format |
 //! | `cut` | a copy of a campaign in which each section of a run has its own records |
+//! | `checksum` | checksums in the Parquet files that are written |
 //! | `blocks` | a long record, block by block |
 //! | `table` | a small table such as `sections.csv` |
 //! | `crate::yaml` | YAML with places of all values |
@@ -26,6 +27,7 @@ pub mod campaign;
 mod campaigns;
 pub(crate) mod cells;
 pub mod checks;
+mod checksum;
 pub mod conversion;
 pub mod cut;
 pub(crate) mod faults;

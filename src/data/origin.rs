@@ -113,6 +113,14 @@ impl Origin {
         self.effects.iter().map(|effect| effect.in_words(equals)).collect::<Vec<_>>().join(" and ")
     }
 
+    /// The SHA-256 of a record as an import wrote it, by its path; `None` if it did not write it, or
+    /// no record of this side.
+    pub fn written(&self, side: &str, path: &str) -> Option<Option<&str>> {
+        let names = self.imported.as_ref()?.written.get(side)?;
+        let name = path.strip_prefix(side).and_then(|rest| rest.strip_prefix('/'));
+        Some(name.and_then(|name| names.get(name)).map(String::as_str))
+    }
+
     /// The text of `origin.yaml`.
     pub fn text(&self) -> String {
         // Texts, numbers and lists can always be written.
@@ -133,6 +141,9 @@ fields! {
         /// For each side what its channels were made of, `Y_1L = -ST1 Y li`.
         "channels" channels: IndexMap<String, Vec<String>>,
         "records" records: Vec<ImportedRecord>,
+        /// SHA-256 of the records as they were written, by side and by name.
+        #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+        "written" written: IndexMap<String, IndexMap<String, String>>,
         /// The text of the mapping.
         "mapping" mapping: Literal,
     }
@@ -216,6 +227,8 @@ mod tests {
                     read_as: "csv; separator `;`".into(),
                     steps: vec!["1794 rows at 200 Hz".into(), "- odd".into()],
                 }],
+                written: [("measurement".into(), [("S01.csv".into(), "12e4".into())].into())]
+                    .into(),
             }),
         };
         let (found, problems) = read(&origin.text());

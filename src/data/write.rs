@@ -104,6 +104,11 @@ impl Outputs {
         self.set.close(file).map_err(|error| self.not_added(inside, error))
     }
 
+    /// The files that were added, with their SHA-256.
+    pub fn hashes(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.set.hashes()
+    }
+
     /// A temporary file without a name on the disk of the folder, for what does not fit into the
     /// memory.
     ///

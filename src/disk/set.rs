@@ -176,6 +176,11 @@ impl Set {
         sync_together(&std::mem::take(&mut self.loose))
     }
 
+    /// The files that were added, with their SHA-256.
+    pub fn hashes(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.paths.iter().map(String::as_str).zip(self.hashes.iter().map(String::as_str))
+    }
+
     /// A temporary file without a name, on the disk of the folder.
     ///
     /// # Errors

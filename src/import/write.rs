@@ -250,10 +250,22 @@ pub fn add_campaign(
             mapping: Literal(mapping.source.text.replace("\r\n", "\n")),
             channels: channels(mapping),
             records,
+            written: written(outputs),
         }),
         ..Origin::default()
     };
     outputs.add(ORIGIN_FILE, origin.text().as_bytes())
+}
+
+/// The SHA-256 of the records, by side and name.
+fn written(outputs: &Outputs) -> IndexMap<String, IndexMap<String, String>> {
+    let mut all: IndexMap<String, IndexMap<String, String>> = IndexMap::new();
+    for (path, sha256) in outputs.hashes() {
+        if let Some((side, name)) = path.split_once('/') {
+            all.entry(side.into()).or_default().insert(name.into(), sha256.into());
+        }
+    }
+    all
 }
 
 /// The track file of a section or a run in the campaign; it keeps its format.

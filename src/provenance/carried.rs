@@ -6,8 +6,8 @@ use std::sync::Arc;
 use serde::Deserialize;
 use serde_json::Value;
 
-use super::before;
 use super::pdf::Attachments;
+use super::{before, signature, statement};
 use crate::certify::{Compiled, Setting, again};
 use crate::check::family::Family;
 use crate::data::hash::sha256;
@@ -20,7 +20,7 @@ use crate::result::{Certification, ProtocolFile};
 use crate::source::Source;
 
 /// Maximum size of a report in bytes; a report with 13 sections has two million.
-const REPORT: u64 = 512 << 20;
+pub const REPORT: u64 = 512 << 20;
 /// Maximum size of the results in bytes; those of 13 sections have 180 000.
 const RESULTS: usize = 128 << 20;
 /// Maximum number of values in results; each takes up to a hundred bytes of memory.
@@ -34,6 +34,8 @@ const BY: [(&str, &str); 3] =
 
 /// File name of the report in an output folder.
 pub const REPORT_PDF: &str = "report.pdf";
+/// File name of the same as HTML.
+pub const REPORT_HTML: &str = "report.html";
 
 #[derive(Debug)]
 pub struct Carried {
@@ -234,6 +236,14 @@ impl Carried {
             before::downgrade(&mut now);
         }
         now
+    }
+
+    /// The files whose signatures are checked: of a folder its statement, which names all others.
+    pub fn signed(&self) -> Vec<PathBuf> {
+        let Some(folder) = &self.folder else { return vec![self.path.clone()] };
+        let pdf = folder.join(REPORT_PDF);
+        let signature = disk::may_be_file(&signature::beside(&pdf));
+        std::iter::once(folder.join(statement::FILE)).chain(signature.then_some(pdf)).collect()
     }
 
     /// Compiles the protocol with the parameters in the results.

@@ -1,13 +1,26 @@
 //! A single check of a report, and its outcome.
 
+use crate::problem::{Problem, Problems};
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
     Agrees,
     Differs,
-    /// Not requested, or without relevance.
+    /// Not checked with what is given, although the report rests on it.
     NotChecked,
+    /// Not requested.
+    NotAsked,
     /// Requested, but not possible.
     NotPossible,
+}
+
+/// Problems as details: the code, what is wrong, and where.
+pub fn lines(problems: &Problems) -> Vec<String> {
+    let line = |problem: &Problem| match &problem.at {
+        Some(at) => format!("{}: {} ({at})", problem.code, problem.says),
+        None => format!("{}: {}", problem.code, problem.says),
+    };
+    problems.0.iter().map(line).collect()
 }
 
 /// A single check.
@@ -29,6 +42,10 @@ impl Check {
 
     pub fn not_checked(name: &'static str, says: impl Into<String>) -> Self {
         Self { name, outcome: Outcome::NotChecked, says: says.into(), details: Vec::new() }
+    }
+
+    pub fn not_asked(name: &'static str, says: impl Into<String>) -> Self {
+        Self { name, outcome: Outcome::NotAsked, says: says.into(), details: Vec::new() }
     }
 
     pub fn not_possible(name: &'static str, says: impl Into<String>) -> Self {

@@ -9,6 +9,7 @@ mod before;
 pub mod carried;
 pub mod check;
 pub mod compare;
+mod files;
 mod pdf;
 pub mod signature;
 pub mod statement;

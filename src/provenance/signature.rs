@@ -137,6 +137,14 @@ fn number(key: &[u8]) -> String {
     key.iter().rev().map(|byte| format!("{byte:02X}")).collect()
 }
 
+const NOT_OF_THIS: &str =
+    "the signature is not one of this file, but of an earlier report or another file";
+
+/// The name of a file without its folder.
+fn shown(path: &Path) -> std::borrow::Cow<'_, str> {
+    path.file_name().unwrap_or_default().to_string_lossy()
+}
+
 /// What file a signature says it is of, if that is not the one it lies beside.
 fn of_another_file(comment: &str, bytes: &[u8]) -> Option<String> {
     let (_, signed) = comment.split_once("sha256:")?;
@@ -160,12 +168,10 @@ pub fn check(
     let at = signature.unwrap_or(&own);
     if signature.is_none() && !disk::may_be_file(at) {
         return Ok(match key {
-            None => Check::not_checked(NAME, "the report has no signature file"),
-            Some(_) => Check::differs(
-                NAME,
-                format!("there is no signature `{}`", at.display()),
-                Vec::new(),
-            ),
+            None => Check::not_asked(NAME, format!("there is no `{}`", shown(at))),
+            Some(_) => {
+                Check::differs(NAME, format!("there is no signature `{}`", shown(at)), Vec::new())
+            }
         });
     }
     let text = text(at)?;
@@ -185,12 +191,18 @@ pub fn check(
         Ok(signed) => number(signed.keynum()),
         Err(error) => return unreadable(&error),
     };
-    let Some(key) = key else {
-        let says =
-            format!("signed with key {by}; give its public key with `--public-key` to check it");
-        return Ok(Check::not_checked(NAME, says));
-    };
     let bytes = content(path)?;
+    let other = of_another_file(signed.trusted_comment(), &bytes);
+    let Some(key) = key else {
+        if other.is_some() {
+            return Ok(Check::differs(NAME, NOT_OF_THIS, other.into_iter().collect()));
+        }
+        let says = format!(
+            "{} is signed with key {by}; give its public key with `--public-key` to check it",
+            shown(path)
+        );
+        return Ok(Check::not_asked(NAME, says));
+    };
     let checked = minisign_verify::PublicKey::from_base64(&key.to_base64())
         .and_then(|key| key.verify(&bytes, &signed, false));
     Ok(match checked {
@@ -200,14 +212,8 @@ pub fn check(
         Err(error) => {
             let keys =
                 format!("signed with key {by}, checked with key {}: {error}", number(key.keynum()));
-            match of_another_file(signed.trusted_comment(), &bytes)
-                .filter(|_| by == number(key.keynum()))
-            {
-                Some(says) => Check::differs(
-                    NAME,
-                    "the signature is not one of this file, but of an earlier report or another file",
-                    vec![says],
-                ),
+            match other.filter(|_| by == number(key.keynum())) {
+                Some(says) => Check::differs(NAME, NOT_OF_THIS, vec![says]),
                 None => Check::differs(
                     NAME,
                     "the signature is not one of this file with this key",

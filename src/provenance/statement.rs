@@ -4,6 +4,7 @@
 //! Formats: in-toto Attestation Framework, "Statement" and "ResourceDescriptor"; SLSA v1.0,
 //! "Provenance". It contains neither time nor host, so that the same input gives the same bytes.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use serde_json::{Map, Value, json};
@@ -12,7 +13,7 @@ use super::check::Check;
 use crate::data::fingerprint::fingerprint;
 use crate::data::hash::sha256;
 use crate::data::text::read_bytes;
-use crate::disk;
+use crate::disk::{self, SetKind};
 use crate::result::Certification;
 
 /// File name.
@@ -83,31 +84,25 @@ fn resource(name: &str, sha256: &str) -> Value {
     json!({"name": name, "digest": {"sha256": sha256}})
 }
 
-/// Compares the files of an output folder with its statement; nothing if there is none.
-pub fn check(folder: &Path) -> Option<Check> {
+/// Compares the files of an output folder with its statement, which must name all of them.
+pub fn check(folder: &Path) -> Check {
     const NAME: &str = "statement";
     /// Maximum size; a statement about 100 000 files has about 15 million bytes.
     const LARGEST: u64 = 64 << 20;
     let path = folder.join(FILE);
-    if !disk::may_exist(&path) {
-        return None;
-    }
     let bytes = match read_bytes(&path, FILE, LARGEST) {
         Ok(bytes) => bytes,
         Err(problem) => {
-            return Some(Check::differs(NAME, "the statement cannot be read", vec![problem.says]));
+            return Check::differs(NAME, "the statement cannot be read", vec![problem.says]);
         }
     };
     let value: Value = serde_json::from_slice(&bytes).unwrap_or(Value::Null);
     let subjects = value["subject"].as_array().filter(|_| value["_type"] == STATEMENT);
     let Some(subjects) = subjects else {
-        return Some(Check::differs(
-            NAME,
-            format!("`{FILE}` is not an in-toto Statement v1"),
-            Vec::new(),
-        ));
+        let says = format!("`{FILE}` is not an in-toto Statement v1");
+        return Check::differs(NAME, says, Vec::new());
     };
-    let mut details = Vec::new();
+    let (mut details, mut named) = (Vec::new(), BTreeSet::new());
     for subject in subjects {
         let (Some(name), Some(said)) =
             (subject["name"].as_str(), subject["digest"]["sha256"].as_str())
@@ -115,6 +110,7 @@ pub fn check(folder: &Path) -> Option<Check> {
             details.push("a subject has no name or no SHA-256".into());
             continue;
         };
+        named.insert(name);
         match fingerprint(folder, name) {
             Ok(Some((hash, _))) if hash == said => {}
             Ok(Some((hash, _))) => details
@@ -123,11 +119,33 @@ pub fn check(folder: &Path) -> Option<Check> {
             Err(problem) => details.push(format!("not readable: {name}: {}", problem.says)),
         }
     }
-    if details.is_empty() {
-        return Some(Check::agrees(
-            NAME,
-            format!("{} files have the SHA-256 given in {FILE}", subjects.len()),
-        ));
+    details.extend(unnamed(folder, &named));
+    let agrees = format!(
+        "{} files have the SHA-256 given in {FILE}, and there are no others",
+        subjects.len()
+    );
+    Check::of(NAME, agrees, "files differ from those in the statement", details)
+}
+
+/// What lies in an output folder and its folders without being named by the statement.
+fn unnamed(folder: &Path, named: &BTreeSet<&str>) -> Vec<String> {
+    let folders: BTreeSet<&str> =
+        named.iter().filter_map(|name| Some(name.rsplit_once('/')?.0)).collect();
+    let mut found = Vec::new();
+    for inside in std::iter::once("").chain(folders.iter().copied()) {
+        for name in disk::names(&folder.join(inside)).unwrap_or_default() {
+            let name = name.to_string_lossy();
+            let path =
+                if inside.is_empty() { name.to_string() } else { format!("{inside}/{name}") };
+            let signed = path.strip_suffix(disk::SIGNATURE).unwrap_or(&path);
+            let known = signed == FILE
+                || named.contains(signed)
+                || folders.contains(path.as_str())
+                || path == SetKind::Report.manifest();
+            if !known {
+                found.push(format!("not in the statement: {path}"));
+            }
+        }
     }
-    Some(Check::differs(NAME, "files differ from those in the statement", details))
+    found
 }

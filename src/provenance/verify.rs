@@ -5,23 +5,25 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 use super::carried::Carried;
-pub use super::check::{Check, Outcome};
+pub use super::check::{Check, Outcome, lines};
 use super::compare::{Compared, Difference, compare};
+pub use super::files::Again;
+use super::files::{as_imported, end, pages};
 use crate::certify::{Compiled, certify, protocol_info};
 use crate::check::family::Family;
 use crate::data::fingerprint::fingerprint;
 use crate::data::hash::sha256;
 use crate::data::{Campaign, Campaigns};
 use crate::problem::{Problem, Problems};
-use crate::report::{attached, figure, typst, view};
 use crate::result::{self, Certification, Kind, THIS};
+use crate::run::Settings;
 use crate::run::find;
 use crate::run::replay::replay;
-use crate::run::{Progress, Settings};
 
 /// Checks of the report alone; returns also its compiled protocol, if possible.
 pub fn alone(carried: &Carried, given: Option<&Family>) -> (Vec<Check>, Option<Compiled>) {
     let mut checks = vec![form(carried)];
+    checks.extend(carried.pdf.as_deref().map(end));
     checks.extend(files_beside(carried));
     let sources = match carried.sources(given) {
         Ok(sources) => sources,
@@ -35,15 +37,10 @@ pub fn alone(carried: &Carried, given: Option<&Family>) -> (Vec<Check>, Option<C
     let mut problems = Problems::default();
     let compiled = carried.compiled(&sources, &mut problems).filter(|_| !problems.any_error());
     let Some(compiled) = compiled else {
-        let details = problems
-            .0
-            .iter()
-            .map(|problem| format!("{}: {}", problem.code, problem.says))
-            .collect();
         checks.push(Check::differs(
             "protocol rules",
             "the protocol in the report has errors",
-            details,
+            lines(&problems),
         ));
         return (checks, None);
     };
@@ -78,7 +75,7 @@ fn form(carried: &Carried) -> Check {
             "written by fishplate {}, this is {THIS}: the form is not compared",
             carried.results.fishplate
         );
-        return Check::not_checked("form", says);
+        return Check::not_asked("form", says);
     }
     let again = result::text(&carried.value);
     if again == carried.text {
@@ -106,7 +103,7 @@ fn files_beside(carried: &Carried) -> Vec<Check> {
         let agrees = "results.json is the same as inside report.pdf";
         checks.push(Check::of("results.json", agrees, "two results", differs));
     }
-    checks.extend(super::statement::check(folder));
+    checks.push(super::statement::check(folder));
     checks
 }
 
@@ -188,17 +185,6 @@ fn statistics(carried: &Carried, compiled: &Compiled) -> Check {
     Check::of(NAME, agrees, "statistics or the verdict do not follow from the values", details)
 }
 
-/// Settings for the repeated evaluation.
-#[allow(missing_debug_implementations, reason = "a function has none")]
-#[derive(Clone, Copy)]
-pub struct Again<'a> {
-    /// The campaign of the report, or all of its pool in any order.
-    pub campaigns: &'a [PathBuf],
-    /// Number of distance plots of the report.
-    pub plots: usize,
-    pub progress: Progress<'a>,
-}
-
 /// Whether as many campaigns are given as the report is of.
 ///
 /// # Errors
@@ -278,20 +264,19 @@ pub fn against(carried: &Carried, compiled: Option<&Compiled>, again: Again<'_>)
     );
     let same = inputs.outcome == Outcome::Agrees;
     let mut checks = vec![inputs];
+    if let Ok(campaigns) = &opened {
+        checks.extend(campaigns.iter().filter_map(as_imported));
+    }
     match certified {
         None => checks.push(Check::not_possible("run again", "the protocol cannot be evaluated")),
         Some(Err(problems)) => {
-            let told = problems.0.iter().map(|problem| match &problem.at {
-                Some(at) => format!("{}: {} ({at})", problem.code, problem.says),
-                None => format!("{}: {}", problem.code, problem.says),
-            });
             checks.push(Check::differs(
                 "run again",
                 "the campaign can no longer be evaluated",
-                told.collect(),
+                lines(&problems),
             ));
         }
-        Some(Ok(found)) => checks.extend(compared(carried, &found, again.plots, same)),
+        Some(Ok(found)) => checks.extend(compared(carried, &found, again, same)),
     }
     checks
 }
@@ -345,7 +330,12 @@ fn place<'a>(
 }
 
 /// Compares all numbers of the report with those of a new evaluation, and then the pages.
-fn compared(carried: &Carried, found: &Certification, plots: usize, inputs: bool) -> Vec<Check> {
+fn compared(
+    carried: &Carried,
+    found: &Certification,
+    again: Again<'_>,
+    inputs: bool,
+) -> Vec<Check> {
     let mut now = carried.comparable(found);
     let mut before = carried.value.clone();
     for value in [&mut before, &mut now] {
@@ -372,68 +362,7 @@ fn compared(carried: &Carried, found: &Certification, plots: usize, inputs: bool
     );
     let numbers = Check::of("run again", agrees, differs, details(&all));
     let same = inputs && numbers.outcome == Outcome::Agrees;
-    let mut checks = vec![numbers];
-    if let Some(pdf) = &carried.pdf {
-        checks.push(pages(carried, pdf, found, (&result::text(found), plots), same));
-    }
-    checks
-}
-
-/// Compares the pages byte by byte, which is exact for the same input. Data added after them may be
-/// a signature of another program.
-fn pages(
-    carried: &Carried,
-    pdf: &[u8],
-    found: &Certification,
-    (results, plots): (&str, usize),
-    same: bool,
-) -> Check {
-    const NAME: &str = "pages";
-    if carried.results.fishplate != THIS {
-        return Check::not_checked(
-            NAME,
-            format!("written by fishplate {}, this is {THIS}", carried.results.fishplate),
-        );
-    }
-    if !same {
-        return Check::not_checked(NAME, "inputs or numbers differ already");
-    }
-    let attachments = attached::attachments(found, results);
-    match typst::typeset(&view::document(found), &figure::figures(found), &attachments) {
-        Err(problems) => Check::not_possible(
-            NAME,
-            problems.0.first().map_or_else(String::new, |problem| problem.says.clone()),
-        ),
-        Ok(made) if made.bytes == pdf => {
-            Check::agrees(NAME, "the PDF is, byte for byte, the one the program writes")
-        }
-        Ok(made) if pdf.starts_with(&made.bytes) => {
-            let added = pdf.len() - made.bytes.len();
-            Check::agrees(
-                NAME,
-                format!(
-                    "the PDF is the one the program writes, with {added} bytes added at its end"
-                ),
-            )
-        }
-        Ok(made) => {
-            let at = made
-                .bytes
-                .iter()
-                .zip(pdf)
-                .position(|(a, b)| a != b)
-                .unwrap_or(made.bytes.len().min(pdf.len()));
-            let help = format!(
-                "from byte {} on; if the report has a number of plots other than {plots}, give it with `--plots`",
-                at + 1
-            );
-            Check::differs(
-                NAME,
-                "the PDF differs from the one the program writes from these inputs",
-                vec![help],
-            )
-        }
-    }
+    std::iter::once(numbers).chain(pages(carried, found, again, same)).collect()
 }
 
 fn details(found: &Compared) -> Vec<String> {

@@ -247,6 +247,18 @@ pub struct FileHash {
     pub bytes: u64,
     /// The record it belongs to; `None` for the campaign's own files.
     pub record: Option<RecordOf>,
+    /// How it differs from the record that an import wrote.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub changed: Option<Changed>,
+}
+
+/// A record that is not as an import wrote it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct Changed {
+    /// Whether the import wrote a record in this place.
+    pub imported: bool,
+    /// Why it was changed, as the campaign says.
+    pub reason: Option<String>,
 }
 
 /// Identification of a record.

@@ -394,6 +394,10 @@ pub enum Reason {
         rule: String,
         sections: usize,
     },
+    /// Records that are not as they were imported, for which no reason is stated.
+    RecordsChanged {
+        records: usize,
+    },
 
     // Comparisons of protocols.
     /// Further problems of the campaign.
@@ -478,6 +482,8 @@ pub enum FindingData {
         correlation: f64,
         own_correlation: f64,
     },
+    /// A record is not as an import wrote it; why, if the campaign says so.
+    RecordChanged { file: String, imported: bool, reason: Option<String> },
     /// A requirement was not checked for want of a vehicle datum.
     CheckWithoutVehicleData { key: String, check: String, sections: Sections },
     /// Rules were not checked for want of a column.
@@ -539,6 +545,10 @@ impl FindingData {
                 self.rule() == other.rule() && required == other_one
             }
             (Self::Copies { .. }, Self::Copies { .. }) => self.rule() == other.rule(),
+            (
+                Self::RecordChanged { imported, reason, .. },
+                Self::RecordChanged { imported: of, reason: other_one, .. },
+            ) => (imported, reason) == (of, other_one),
             (Self::Exchanged { other: with, .. }, Self::Exchanged { other: other_one, .. }) => {
                 self.rule() == other.rule() && with == other_one
             }

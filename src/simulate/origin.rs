@@ -74,6 +74,10 @@ impl Made<'_> {
         }
         let before = campaign.origin.as_ref().map(|origin| &origin.campaign.0);
         let first = before.filter(|name| !name.is_empty());
+        let mut imported = campaign.origin.as_ref().and_then(|origin| origin.imported.clone());
+        if let Some(imported) = &mut imported {
+            imported.written.shift_remove(RecordKind::Simulation.key());
+        }
         Ok(Origin {
             program: Literal(concat!("fishplate ", env!("CARGO_PKG_VERSION")).to_string()),
             command: Literal(self.command.to_string()),
@@ -82,7 +86,7 @@ impl Made<'_> {
             effects,
             fitted_to,
             sources,
-            imported: campaign.origin.as_ref().and_then(|origin| origin.imported.clone()),
+            imported,
         })
     }
 }

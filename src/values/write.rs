@@ -28,8 +28,11 @@ pub fn write(plan: &Plan, values: &Values) -> Result<Vec<u8>, Problem> {
     let written = || -> Result<Vec<u8>, Box<dyn Error>> {
         let table = table(plan, values)?;
         let mut bytes = Vec::new();
-        let mut writer =
-            ArrowWriter::try_new(&mut bytes, table.schema(), Some(properties()?.build()))?;
+        let mut writer = ArrowWriter::try_new(
+            &mut bytes,
+            table.schema(),
+            Some(properties()?.set_created_by("fishplate".into()).build()),
+        )?;
         writer.write(&table)?;
         for (key, value) in metadata(values)? {
             writer.append_key_value_metadata(KeyValue::new(key.to_string(), value));

@@ -631,6 +631,7 @@ fn campaign(sections: &[SectionResult]) -> CampaignInfo {
             sha256: hash(at),
             bytes: 2_311 + at as u64,
             record: None,
+            changed: None,
         })
         .collect();
     for (at, section) in sections.iter().enumerate() {
@@ -640,6 +641,7 @@ fn campaign(sections: &[SectionResult]) -> CampaignInfo {
                 sha256: hash(10 + 2 * at + side),
                 bytes: 1_204_511 + at as u64,
                 record: None,
+                changed: None,
             });
         }
     }

@@ -474,9 +474,27 @@ fn traces(noise: &mut Noise) -> Vec<Trace> {
 fn campaign() -> CampaignInfo {
     let hash = |seed: u8| format!("{seed:02x}").repeat(32);
     let mut files = vec![
-        FileHash { path: "campaign.yaml".into(), sha256: hash(1), bytes: 412, record: None },
-        FileHash { path: "vehicle.yaml".into(), sha256: hash(2), bytes: 268, record: None },
-        FileHash { path: "sections.csv".into(), sha256: hash(3), bytes: 2311, record: None },
+        FileHash {
+            path: "campaign.yaml".into(),
+            sha256: hash(1),
+            bytes: 412,
+            record: None,
+            changed: None,
+        },
+        FileHash {
+            path: "vehicle.yaml".into(),
+            sha256: hash(2),
+            bytes: 268,
+            record: None,
+            changed: None,
+        },
+        FileHash {
+            path: "sections.csv".into(),
+            sha256: hash(3),
+            bytes: 2311,
+            record: None,
+            changed: None,
+        },
     ];
     for number in 1..=33_u8 {
         files.push(FileHash {
@@ -484,12 +502,14 @@ fn campaign() -> CampaignInfo {
             sha256: hash(100 + number),
             bytes: 812_331 + u64::from(number),
             record: None,
+            changed: None,
         });
         files.push(FileHash {
             path: format!("simulation/S{number:02}.csv"),
             sha256: hash(150 + number),
             bytes: 903_120 + u64::from(number),
             record: None,
+            changed: None,
         });
     }
     CampaignInfo {

@@ -31,7 +31,17 @@ fields! {
         "protocol" protocol: Option<Spanned<String>>,
         "parameters" parameters (parameters): Option<Vec<Parameter>>,
         "origin" origin (origin): Option<Origin>,
+        /// Records that were changed after an import.
+        "edited" edited: Vec<Edited>,
         "report" report: Option<Node>,
+    }
+}
+
+fields! {
+    /// A record that was changed after an import, and why.
+    pub struct Edited in Opening<'_>: "an edited record" {
+        "record" record: Spanned<String>,
+        "reason" reason: String,
     }
 }
 

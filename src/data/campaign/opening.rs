@@ -14,6 +14,17 @@ pub struct ReadFile {
     pub path: String,
     pub sha256: String,
     pub bytes: u64,
+    /// How the record differs from the one that an import wrote.
+    pub changed: Option<Changed>,
+}
+
+/// A record that is not as an import wrote it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Changed {
+    /// The import wrote a record in this place.
+    pub imported: bool,
+    /// What `campaign.yaml` says of it.
+    pub reason: Option<String>,
 }
 
 /// The folder of a campaign that is being opened, and what was read in it so far.
@@ -40,7 +51,7 @@ impl Reader<'_, '_> {
             None => problem,
         });
         let (source, sha256, bytes) = self.keep(read)?;
-        self.with.files.push(ReadFile { path: place.inside.clone(), sha256, bytes });
+        self.with.files.push(ReadFile { path: place.inside.clone(), sha256, bytes, changed: None });
         let tree = yaml::load(&source, self.problems)?;
         Some((source, tree))
     }
@@ -68,7 +79,8 @@ impl Reader<'_, '_> {
         });
         self.problems.add(found.0.into_iter().map(|problem| problem.or_at(&span)));
         let (table, bytes) = table?;
-        self.with.files.push(ReadFile { path: place.inside, sha256: table.sha256.clone(), bytes });
+        let sha256 = table.sha256.clone();
+        self.with.files.push(ReadFile { path: place.inside, sha256, bytes, changed: None });
         Some(table)
     }
 }

@@ -7,8 +7,9 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::Campaign;
+use super::layout::Edited;
 use super::members::{self, RecordFolder, RecordKind, WhichRecord};
-use super::opening::ReadFile;
+use super::opening::{Changed, ReadFile};
 use super::runs::RunStretch;
 use crate::data::{
     folder::{check_file_name, names_in},
@@ -308,8 +309,23 @@ impl Campaign {
             along.values.iter_mut().for_each(|value| *value += offset);
         }
         let (path, sha256) = (source.inside().to_string(), record.sha256.clone());
-        let file = ReadFile { path, sha256, bytes: record.bytes as u64 };
+        let changed = match &source {
+            RecordSource::File(_) => self.changed(which.kind, &path, &sha256),
+            RecordSource::Object(_) | RecordSource::Memory(_) => None,
+        };
+        let file = ReadFile { path, sha256, bytes: record.bytes as u64, changed };
         Ok((record, file))
+    }
+
+    /// How a record differs from the one that an import wrote; `None` if it does not, or no import
+    /// wrote records of its kind.
+    pub fn changed(&self, kind: RecordKind, path: &str, sha256: &str) -> Option<Changed> {
+        let written = self.origin.as_ref()?.written(kind.key(), path)?;
+        // The format may have changed since.
+        let same = |edited: &&Edited| Format::stem(&edited.record.value) == Format::stem(path);
+        let reason = || self.edited.iter().find(same).map(|edited| edited.reason.clone());
+        let changed = || Changed { imported: written.is_some(), reason: reason() };
+        (written != Some(sha256)).then(changed)
     }
 }
 

@@ -14,6 +14,7 @@ use parquet::file::metadata::{ColumnChunkMetaData, ParquetMetaData, ParquetMetaD
 use super::guard;
 use crate::data::{
     cells::{Heading, duplicates, name_and_unit, shortened},
+    checksum::{self, Sums},
     write::Digits,
 };
 use crate::problem::{Problem, error, problem};
@@ -31,6 +32,8 @@ pub struct Layout {
     pub headings: Vec<Heading>,
     /// Row before the first one of each group, and the number of rows of the file.
     starts: Vec<usize>,
+    /// Of a file that this program wrote.
+    sums: Sums,
 }
 
 impl Layout {
@@ -49,7 +52,10 @@ impl Layout {
         let (metadata, described) = parsed.map_err(|why| damaged(shown, &why))?;
         let starts = starts(metadata.metadata(), shown)?;
         let headings = headings_of(metadata.schema(), &described, shown)?;
-        Ok(Self { fields: fields(&metadata, &described), metadata, headings, starts })
+        let sums = sums(footer, metadata.metadata()).ok_or_else(|| {
+            damaged(shown, "its footer is not the one that was written (checksum)")
+        })?;
+        Ok(Self { fields: fields(&metadata, &described), metadata, headings, starts, sums })
     }
 
     pub fn rows(&self) -> usize {
@@ -71,6 +77,25 @@ impl Layout {
     pub fn chunk(&self, group: usize, position: usize) -> Option<&ColumnChunkMetaData> {
         Some(self.metadata.metadata().row_group(group).column(self.fields.get(position)?.leaf?))
     }
+
+    /// Whether these bytes of a column in a group are those that were written, as far as the file
+    /// says so.
+    pub fn is_sound(&self, group: usize, position: usize, bytes: &[u8]) -> bool {
+        let leaf = self.fields.get(position).and_then(|field| field.leaf).unwrap_or_default();
+        let columns = self.metadata.parquet_schema().num_columns();
+        self.sums.holds(group * columns + leaf, bytes)
+    }
+}
+
+/// The checksums that the file states of its parts; `None` if its footer is not as it was written.
+fn sums(footer: &[u8], metadata: &ParquetMetaData) -> Option<Sums> {
+    let file = metadata.file_metadata();
+    if file.created_by() != Some(checksum::WRITER) {
+        return Some(Sums::default());
+    }
+    let mut entries = file.key_value_metadata().into_iter().flatten();
+    let entry = entries.find(|entry| entry.key == checksum::KEY)?;
+    checksum::is_sound(footer).then(|| Sums::of_entry(entry.value.as_deref().unwrap_or_default()))
 }
 
 /// A column of the file.

@@ -11,10 +11,12 @@ use flate2::write::DeflateEncoder;
 use parquet::arrow::ArrowWriter;
 use parquet::basic::{Compression, ZstdLevel};
 use parquet::errors::ParquetError;
+use parquet::file::metadata::KeyValue;
 use parquet::file::properties::{EnabledStatistics, WriterProperties, WriterPropertiesBuilder};
 use parquet::schema::types::ColumnPath;
 
 use super::digits::Digits;
+use crate::data::checksum;
 use crate::problem::{Problem, problem};
 
 /// Rows of a row group: 80 s at 200 Hz, so that the record of a section is one group, and a stretch
@@ -32,6 +34,8 @@ const TRIED: usize = 1 << 13;
 /// A column with at most this share of different values in its rows is written with a dictionary: a
 /// speed that hardly changes, a flag.
 const DICTIONARY: f64 = 1.0 / 16.0;
+/// Bytes after the footer: its length and the magic number.
+const TAIL: usize = 8;
 
 /// The values of a column.
 #[derive(Clone, Debug, PartialEq)]
@@ -125,8 +129,10 @@ pub fn parquet_in_groups(
         fields.push(field.with_metadata(metadata));
     }
     let schema = Arc::new(Schema::new(fields));
-    let mut writer = ArrowWriter::try_new(sink, Arc::clone(&schema), Some(properties.build()))
+    let held = Held { sink, bytes: Vec::new(), before: 0 };
+    let mut writer = ArrowWriter::try_new(held, Arc::clone(&schema), Some(properties.build()))
         .map_err(failed)?;
+    let mut sums = checksum::blank();
     for start in (0..rows).step_by(GROUP) {
         let array = |values: Values| -> ArrayRef {
             match values {
@@ -136,10 +142,52 @@ pub fn parquet_in_groups(
         };
         let arrays = part(start..rows.min(start + GROUP))?.into_iter().map(array).collect();
         let batch = RecordBatch::try_new(Arc::clone(&schema), arrays).map_err(failed)?;
-        writer.write(&batch).map_err(failed)?;
+        writer.write(&batch).and_then(|()| writer.flush()).map_err(failed)?;
+        writer.sync().map_err(failed)?;
+        let group = writer.flushed_row_groups().last().map(|group| group.columns().to_vec());
+        let held = writer.inner_mut();
+        sums.extend(group.iter().flatten().map(|column| held.checksum(column.byte_range())));
+        held.pass_on().map_err(failed)?;
     }
-    writer.close().map_err(failed)?;
-    Ok(())
+    writer.append_key_value_metadata(KeyValue::new(checksum::KEY.into(), sums));
+    let mut held = writer.into_inner().map_err(failed)?;
+    let end = held.bytes.len().saturating_sub(TAIL);
+    checksum::close(&mut held.bytes[..end]);
+    held.pass_on().map_err(failed)
+}
+
+/// Holds back the bytes of a row group, and of the footer, until their checksums are known.
+struct Held<W> {
+    sink: W,
+    bytes: Vec<u8>,
+    /// Bytes that were passed on.
+    before: u64,
+}
+
+impl<W: io::Write> Held<W> {
+    /// Of a part of the file, which is held.
+    fn checksum(&self, (start, length): (u64, u64)) -> String {
+        let at = start.saturating_sub(self.before) as usize;
+        checksum::of_column(self.bytes.get(at..at + length as usize).unwrap_or_default())
+    }
+
+    fn pass_on(&mut self) -> io::Result<()> {
+        self.sink.write_all(&self.bytes)?;
+        self.before += self.bytes.len() as u64;
+        self.bytes.clear();
+        Ok(())
+    }
+}
+
+impl<W> io::Write for Held<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.bytes.extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
 }
 
 fn failed(error: impl std::fmt::Display) -> Problem {
@@ -190,7 +238,9 @@ fn saved(values: &[f64]) -> f64 {
 pub fn properties() -> Result<WriterPropertiesBuilder, ParquetError> {
     Ok(WriterProperties::builder()
         // Without a version, so that a new one of the library does not change the bytes.
-        .set_created_by("fishplate".to_string())
+        .set_created_by(checksum::WRITER.to_string())
+        // Where pages begin: nothing here reads it, and it has no checksum.
+        .set_offset_index_disabled(true)
         .set_compression(Compression::ZSTD(ZstdLevel::try_new(LEVEL)?))
         // Of row groups: readers skip by them. Those of pages would be as large as some columns.
         .set_statistics_enabled(EnabledStatistics::Chunk))

@@ -44,7 +44,7 @@ enum Table {
 
 /// Position of one object.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum ObjectPosition {
+pub enum ObjectPosition {
     Free,
     At(usize),
     /// In an object stream, at this index.
@@ -83,7 +83,25 @@ impl<'a> Document<'a> {
         Ok(document)
     }
 
-    fn parser(&self, at: usize) -> Parser<'_> {
+    /// The numbers in the tables of all updates that another one of the same file does not have.
+    ///
+    /// # Errors
+    /// A table is not one of lines, whose size is bounded by that of the file.
+    pub fn updated(&self, before: &Self) -> Result<Vec<usize>, Broken> {
+        let newer = self.tables.len().saturating_sub(before.tables.len());
+        let mut numbers = Vec::new();
+        for table in &self.tables[..newer] {
+            let Table::Lines(parts) = table else {
+                return Err(Broken("an update has a compressed table of places"));
+            };
+            parts
+                .iter()
+                .for_each(|(first, count, _)| numbers.extend(*first..first.saturating_add(*count)));
+        }
+        Ok(numbers)
+    }
+
+    pub fn parser(&self, at: usize) -> Parser<'_> {
         Parser { bytes: self.bytes, at, budget: &self.budget }
     }
 
@@ -144,7 +162,7 @@ impl<'a> Document<'a> {
         Ok(found)
     }
 
-    fn place(&self, number: u32) -> Result<ObjectPosition, Broken> {
+    pub fn place(&self, number: u32) -> Result<ObjectPosition, Broken> {
         for table in &self.tables {
             if let Some(place) = table.place(number, self.bytes)? {
                 return Ok(place);

@@ -7,9 +7,11 @@
 mod document;
 mod object;
 mod stream;
+mod update;
 
 use document::Document;
 use object::{Dict, Object};
+pub use update::{Written, written};
 
 use crate::problem::Problem;
 

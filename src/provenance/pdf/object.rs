@@ -1,4 +1,4 @@
-//! Objects of a PDF (ISO 32000-1, clause 7.3), as far as needed for attachments.
+//! Objects of a PDF (ISO 32000-1, clause 7.3).
 
 use std::cell::Cell;
 
@@ -19,8 +19,8 @@ pub enum Object {
     Dict(Dict),
     /// The number of another object.
     Reference(u32),
-    /// A boolean or a number with a fraction, which are not needed.
-    Other,
+    Real(f64),
+    Boolean(bool),
 }
 
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -30,6 +30,28 @@ impl Dict {
     /// The first value of a key, as other readers use it.
     pub fn get(&self, key: &str) -> Option<&Object> {
         self.0.iter().find(|(known, _)| known == key.as_bytes()).map(|(_, value)| value)
+    }
+
+    pub fn iter(&self) -> impl Iterator<Item = (&[u8], &Object)> {
+        self.0.iter().map(|(key, value)| (key.as_slice(), value))
+    }
+
+    /// Whether each key is one of these.
+    pub fn only(&self, keys: &[&str]) -> bool {
+        self.iter().all(|(key, _)| keys.iter().any(|known| known.as_bytes() == key))
+    }
+
+    /// Whether both have the same values, but of some keys.
+    pub fn same_but(&self, other: &Self, keys: &[&str]) -> bool {
+        let rest = |one: &Self| {
+            let kept = |(key, _): &&(Vec<u8>, Object)| {
+                !keys.iter().any(|known| known.as_bytes() == key.as_slice())
+            };
+            let mut rest: Vec<_> = one.0.iter().filter(kept).cloned().collect();
+            rest.sort_by(|(one, _), (other, _)| one.cmp(other));
+            rest
+        };
+        rest(self) == rest(other)
     }
 
     /// Adds the keys and values of another dictionary that this one lacks.
@@ -60,7 +82,7 @@ pub struct Parser<'a> {
     pub budget: &'a Cell<usize>,
 }
 
-fn is_space(byte: u8) -> bool {
+pub fn is_space(byte: u8) -> bool {
     matches!(byte, 0 | b'\t' | b'\n' | 0x0c | b'\r' | b' ')
 }
 
@@ -150,8 +172,11 @@ impl Parser<'_> {
             }
             b'+' | b'-' | b'.' | b'0'..=b'9' => self.number(),
             _ => {
-                let known =
-                    [("true", Object::Other), ("false", Object::Other), ("null", Object::Null)];
+                let known = [
+                    ("true", Object::Boolean(true)),
+                    ("false", Object::Boolean(false)),
+                    ("null", Object::Null),
+                ];
                 let found = known.into_iter().find(|(word, _)| self.word(word));
                 found.map(|(_, object)| object).ok_or(Broken("it contains an invalid object"))
             }
@@ -178,7 +203,7 @@ impl Parser<'_> {
         let Ok(value) = token.parse::<i64>() else {
             return token
                 .parse::<f64>()
-                .map(|_| Object::Other)
+                .map(Object::Real)
                 .map_err(|_| Broken("it contains an invalid number"));
         };
         // `12 0 R` is a reference, `12 0 1` are three numbers.

@@ -4,7 +4,7 @@
 use super::View;
 use crate::report::document::*;
 use crate::result::report::stated;
-use crate::result::{Certification, ReportItem};
+use crate::result::{Certification, Finding, FindingData, Occurrence, ReportItem};
 
 /// Printed for an item that the campaign does not state.
 const NOT_STATED: &str = "not stated";
@@ -92,6 +92,16 @@ fn unbroken(clause: &str) -> Option<String> {
     (!clause.is_empty()).then(|| clause.replace(' ', "\u{a0}"))
 }
 
+/// A record that was edited, and why.
+fn edited(place: &Occurrence) -> Option<String> {
+    match &place.data {
+        FindingData::RecordChanged { file, reason: Some(reason), .. } => {
+            Some(format!("{file} ({reason})"))
+        }
+        _ => None,
+    }
+}
+
 fn deviations(found: &Certification) -> String {
     let protocol = &found.protocol;
     let changed: Vec<String> = protocol
@@ -111,11 +121,16 @@ fn deviations(found: &Certification) -> String {
     if !changed.is_empty() {
         parts.push(format!("parameters changed: {}", changed.join(", ")));
     }
-    if parts.is_empty() {
-        "None from the protocol.".to_owned()
-    } else {
-        format!("{}; see chapter Protocol.", parts.join("; "))
+    let edited: Vec<String> =
+        found.findings.iter().flat_map(Finding::places).filter_map(edited).collect();
+    let mut said = Vec::new();
+    if !parts.is_empty() {
+        said.push(format!("{}; see chapter Protocol.", parts.join("; ")));
     }
+    if !edited.is_empty() {
+        said.push(format!("Records edited after the import: {}.", edited.join("; ")));
+    }
+    if said.is_empty() { "None from the protocol.".to_owned() } else { said.join(" ") }
 }
 
 #[cfg(test)]

@@ -6,10 +6,12 @@
 //! | `causes` | the probable cause of a wrong value |
 //! | `plausibility`, `exchanged` | plausibility rules in one section |
 //! | `checks` | checks of a section on its records |
+//! | `changed` | records that are not as an import wrote them |
 //! | `copies` | signals that are copies, in all sections |
 //! | `consequence` | sections that are not used, for what was found; faults that end a run |
 
 mod causes;
+pub mod changed;
 mod checks;
 pub mod consequence;
 pub mod copies;

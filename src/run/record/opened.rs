@@ -5,11 +5,11 @@ use std::sync::{Arc, Mutex};
 use super::memo::{Memo, Numbers};
 use super::signal::{Along, Rate, Samples};
 use crate::check::plan::{Axis, Plan};
-use crate::data::campaign::ReadFile;
+use crate::data::campaign::{Changed, ReadFile};
 use crate::data::checks::{Section, check_axis, whole};
 use crate::data::{Campaign, Record, RecordKind, WhichRecord, qualified};
 use crate::problem::Problem;
-use crate::result::{FileHash, Reason, RecordOf};
+use crate::result::{self, FileHash, Reason, RecordOf};
 use crate::run::sections::{Extent, Unit};
 use crate::units::Dimension;
 
@@ -133,7 +133,9 @@ impl Sampled {
 /// A file as results state it; of several campaigns with that of the file.
 pub fn file_hash(read: &ReadFile, campaign: Option<&str>, record: Option<RecordOf>) -> FileHash {
     let path = qualified(campaign, &read.path);
-    FileHash { path, sha256: read.sha256.clone(), bytes: read.bytes, record }
+    let changed = read.changed.clone();
+    let changed = changed.map(|Changed { imported, reason }| result::Changed { imported, reason });
+    FileHash { path, sha256: read.sha256.clone(), bytes: read.bytes, record, changed }
 }
 
 /// A record of a section that is read.
@@ -198,7 +200,13 @@ impl Opened {
         let sampled = Sampled::new(plan, kind, columns, first_row, rate);
         Self {
             extent: sampled.extent().unwrap_or_default(),
-            file: FileHash { path: String::new(), sha256: String::new(), bytes: 0, record: None },
+            file: FileHash {
+                path: String::new(),
+                sha256: String::new(),
+                bytes: 0,
+                record: None,
+                changed: None,
+            },
             margins: None,
             memo: None,
             own: None,

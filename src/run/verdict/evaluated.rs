@@ -5,7 +5,7 @@ use crate::check::plan::{EstimateKind, Plan};
 use crate::problem::Problems;
 use crate::result::study::Reduction;
 use crate::result::{Consequence, DomainResult, FileHash, Finding, Reason, Remark, VehicleValue};
-use crate::run::data_rules::{copies, nothing_usable, stop_on_fault, take_over};
+use crate::run::data_rules::{changed, copies, nothing_usable, stop_on_fault, take_over};
 use crate::run::describe::domain;
 use crate::run::estimate::{Group, Rows, used};
 use crate::run::limit::pool::{self, Pool};
@@ -87,8 +87,13 @@ impl Basis {
             return Err(nothing_usable(&units, values));
         }
         let application = domain::compared(plan, &self.facts, &units, &self.wanted);
-        let findings = findings.into_iter().chain(domain::findings(&application)).collect();
-        let files = values.iter().flat_map(|values| values.files.iter().cloned()).collect();
+        let files: Vec<FileHash> =
+            values.iter().flat_map(|values| values.files.iter().cloned()).collect();
+        let findings = findings
+            .into_iter()
+            .chain(domain::findings(&application))
+            .chain(changed::findings(&files))
+            .collect();
         Ok(Evaluated {
             facts: self.facts.clone(),
             units,

@@ -11,6 +11,7 @@ use crate::result::{
     Consequence, Figures, Finding, PairValue, QuantityResult, Reason, Reported, Verdict,
     VerdictResult, ZoneResult,
 };
+use crate::run::data_rules::changed;
 use crate::run::describe::{reports, spreads};
 use crate::run::estimate::{Group, Member, Rows, count_independent, used};
 use crate::run::limit::{Compared, Judging, rule_place};
@@ -57,6 +58,7 @@ pub fn judge(
     }
     missing.extend(without_sections(units));
     missing.extend(not_plausible(plan, told.findings, missing.is_empty()));
+    missing.extend(changed::reason(told.findings));
     missing.extend(told.barred);
     let all = Rows::of_all(plan, facts, &used);
     let table: Vec<_> = all.iter().map(Rows::usable).collect();

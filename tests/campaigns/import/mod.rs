@@ -6,6 +6,7 @@
 mod early;
 mod example;
 mod memory;
+mod origin;
 mod process;
 mod runs;
 mod times;

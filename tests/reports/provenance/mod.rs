@@ -5,6 +5,7 @@ use crate::common::campaign;
 use crate::common::program;
 
 mod archive;
+mod forged;
 mod hostile;
 mod sign;
 mod statement;

@@ -29,8 +29,8 @@ fn keys(folder: &Path) -> String {
 
 #[test]
 fn a_signed_report_verifies_and_a_changed_one_does_not() {
-    let folder = copy(&written().out());
-    let name = keys(folder.path());
+    let (folder, of_keys) = (copy(&written().out()), tempfile::tempdir().expect("a folder"));
+    let name = keys(of_keys.path());
     let (secret, public) = (format!("{name}.key"), format!("{name}.pub"));
     let report = text(&folder.path().join("report.pdf"));
     let ran = fishplate(&["verify", &report, "--public-key", &public]);
@@ -41,17 +41,22 @@ fn a_signed_report_verifies_and_a_changed_one_does_not() {
     );
     let ran = fishplate(&["sign", &report, "--key", &secret]);
     assert_eq!(ran.code, 0, "{}", ran.stderr);
-    let ran = fishplate(&["verify", &report]);
+    let ran = fishplate(&["verify", &report, "--report-only"]);
     assert!(ran.code == 0 && check(&ran, "signature").contains("--public-key"), "{}", ran.stdout);
     // By file, by the key's own word, and for the folder.
     let word =
         fs::read_to_string(&public).expect("readable").lines().nth(1).expect("a key").to_string();
     let folder_name = text(folder.path());
+    let statement = text(&folder.path().join("statement.json"));
+    assert_eq!(fishplate(&["sign", &statement, "--key", &secret]).code, 0);
     for (of, key) in [(&report, &public), (&report, &word), (&folder_name, &public)] {
-        let ran = fishplate(&["verify", of, "--public-key", key]);
+        let ran = fishplate(&["verify", of, "--public-key", key, "--report-only"]);
         assert_eq!(ran.code, 0, "{}{}", ran.stdout, ran.stderr);
         let line = check(&ran, "signature");
-        assert!(line.starts_with("agrees") && line.contains("file:report.pdf sha256:"), "{line}");
+        assert!(line.starts_with("agrees"), "{line}");
+        assert!(ran.stdout.contains("file:report.pdf sha256:"), "{}", ran.stdout);
+        let of_folder = ran.stdout.contains("file:statement.json sha256:");
+        assert_eq!(of_folder, of == &folder_name, "{}", ran.stdout);
     }
     // Another key.
     let other = keys(&tempfile::tempdir().expect("a folder").keep());

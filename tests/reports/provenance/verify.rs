@@ -21,7 +21,7 @@ fn what_was_written_agrees_from_every_side() {
     let written = written();
     let campaign = written.campaign();
     for report in [written.pdf(), written.out(), written.results()] {
-        let alone = verify(&report, None, &[]);
+        let alone = verify(&report, None, &["--report-only"]);
         assert_eq!(alone.code, 0, "{}{}", alone.stdout, alone.stderr);
         for name in ["form", "protocol text", "protocol rules", "statistics"] {
             assert!(check(&alone, name).starts_with("agrees"), "{}", alone.stdout);
@@ -268,13 +268,6 @@ fn a_changed_page_is_told() {
         "{}",
         ran.stdout
     );
-    // What is added behind the end, as a signature inside a PDF is, leaves the pages as they were.
-    let mut longer = fs::read(written.pdf()).expect("readable");
-    longer.extend_from_slice(b"\n% more\n");
-    fs::write(&path, &longer).expect("written");
-    let ran = verify(&path, Some(&written.campaign()), &[]);
-    assert_eq!(ran.code, 0, "{}", ran.stdout);
-    assert!(check(&ran, "pages").contains("8 bytes added"), "{}", ran.stdout);
     let plots = verify(&written.pdf(), Some(&written.campaign()), &["--plots", "2"]);
     assert!(plots.code == 1 && plots.stdout.contains("--plots"), "{}", plots.stdout);
 }

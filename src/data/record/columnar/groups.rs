@@ -138,6 +138,9 @@ impl Opened<'_> {
             memory += range.end - range.start;
             self.within(memory, "a row group")?;
             let read = self.store.read(range.clone(), shown)?;
+            if !layout.is_sound(group, column.position, &read) {
+                return Err(bad("its bytes are not those that were written (checksum)"));
+            }
             memory += guard::pages(&read, chunk).map_err(|why| bad(&why))?;
             bytes.push_range(range, read);
             self.within(memory, "a row group")?;

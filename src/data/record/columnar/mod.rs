@@ -341,6 +341,28 @@ mod tests {
         (0..bytes.len()).for_each(|end| assert!(read_bytes(&bytes[..end]).is_err(), "{end}"));
     }
 
+    /// A changed byte is told, wherever it is, but for the name of the program that wrote the file.
+    #[test]
+    fn every_changed_byte_is_told() {
+        let time = numbers("time [ms]", (0..300).map(|row| 5.0 * f64::from(row)));
+        let force = numbers("Y [kN]", (0..300).map(|row| f64::from(row).sin() * 8.0));
+        let bytes = parquet(&[time, force]).expect("written");
+        let sound = read_bytes(&bytes).expect("good");
+        for at in 0..bytes.len() {
+            let mut changed = bytes.clone();
+            changed[at] ^= 1 << (at % 8);
+            if let Ok(record) = read_bytes(&changed) {
+                let values = |record: &Record| {
+                    record.columns.iter().map(|column| column.values.clone()).collect::<Vec<_>>()
+                };
+                let footer = at > bytes.len() - 200;
+                let of_writer =
+                    footer && !changed.windows(16).any(|part| part == b"fishplate, crc32");
+                assert!(of_writer && values(&record) == values(&sound), "byte {at}");
+            }
+        }
+    }
+
     /// The sum of the sizes that the tests ask for is far below what a declared size could ask for.
     fn survived(bytes: &[u8]) {
         with(bytes, "r.parquet", |path| {
