@@ -149,6 +149,8 @@ pub fn parquet_in_groups(
         sums.extend(group.iter().flatten().map(|column| held.checksum(column.byte_range())));
         held.pass_on().map_err(failed)?;
     }
+    // Of a file without rows, the magic number is still held.
+    writer.sync().and_then(|()| writer.inner_mut().pass_on()).map_err(failed)?;
     writer.append_key_value_metadata(KeyValue::new(checksum::KEY.into(), sums));
     let mut held = writer.into_inner().map_err(failed)?;
     let end = held.bytes.len().saturating_sub(TAIL);

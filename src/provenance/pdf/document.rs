@@ -25,6 +25,8 @@ pub struct Document<'a> {
     /// Depth of nested reads.
     depth: Cell<usize>,
     tables: Vec<Table>,
+    /// Where the tables begin, the newest first.
+    pub starts: Vec<usize>,
     pub trailer: Dict,
     /// Unpacked object streams.
     groups: RefCell<BTreeMap<u32, Vec<u8>>>,
@@ -59,6 +61,7 @@ impl<'a> Document<'a> {
             structure: Cell::new(STRUCTURE),
             depth: Cell::new(0),
             tables: Vec::new(),
+            starts: Vec::new(),
             trailer: Dict::default(),
             groups: RefCell::default(),
         };
@@ -67,12 +70,11 @@ impl<'a> Document<'a> {
         let last = memchr::memmem::rfind(&bytes[tail..], b"startxref")
             .ok_or(Broken("its end is missing"))?;
         let mut next = Some(document.parser(tail + last + b"startxref".len()).integer()?);
-        let mut seen = Vec::new();
         while let Some(at) = next {
-            if seen.contains(&at) || seen.len() >= VERSIONS {
+            if document.starts.contains(&at) || document.starts.len() >= VERSIONS {
                 return Err(Broken("its tables of places lead in a circle"));
             }
-            seen.push(at);
+            document.starts.push(at);
             let trailer = document.table(at)?;
             if let Some(both) = trailer.get("XRefStm").and_then(Object::integer) {
                 document.table(both)?;

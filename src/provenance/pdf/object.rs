@@ -1,6 +1,7 @@
 //! Objects of a PDF (ISO 32000-1, clause 7.3).
 
 use std::cell::Cell;
+use std::collections::BTreeSet;
 
 use super::Broken;
 
@@ -67,6 +68,18 @@ impl Dict {
 impl Object {
     pub fn integer(&self) -> Option<usize> {
         if let Self::Integer(value) = self { usize::try_from(*value).ok() } else { None }
+    }
+
+    /// Whether no dictionary in it has a key twice, of which readers take one or the other.
+    pub fn is_unique(&self) -> bool {
+        match self {
+            Self::Array(all) => all.iter().all(Self::is_unique),
+            Self::Dict(Dict(entries)) => {
+                let keys: BTreeSet<&[u8]> = entries.iter().map(|(key, _)| key.as_slice()).collect();
+                keys.len() == entries.len() && entries.iter().all(|(_, value)| value.is_unique())
+            }
+            _ => true,
+        }
     }
 
     pub fn is_name(&self, name: &str) -> bool {

@@ -40,7 +40,8 @@ pub fn written(bytes: &[u8]) -> Result<Written, String> {
     }
     let before = Document::open(&bytes[..end]).map_err(told)?;
     let after = Document::open(bytes).map_err(told)?;
-    let mut update = Update { bytes, before, after, objects: BTreeMap::new(), ends: Vec::new() };
+    let (objects, starts, ends) = (BTreeMap::new(), before.starts.clone(), Vec::new());
+    let mut update = Update { bytes, before, after, objects, starts, ends };
     update.read(end).map_err(|Broken(says)| {
         format!("{} bytes after the end are no update: {says}", bytes.len() - end)
     })?;
@@ -68,10 +69,20 @@ struct Update<'a> {
     bytes: &'a [u8],
     before: Document<'a>,
     after: Document<'a>,
-    /// Every version of each object, with where it is, in the order of the file.
-    objects: BTreeMap<u32, Vec<(usize, Object)>>,
+    /// Every version of each object in the order of the file.
+    objects: BTreeMap<u32, Vec<Version>>,
+    /// Where the tables begin, the newest first.
+    starts: Vec<usize>,
     /// Where each update ends.
     ends: Vec<usize>,
+}
+
+/// An object of an update.
+struct Version {
+    at: usize,
+    object: Object,
+    /// Data follow, which are not compared.
+    is_stream: bool,
 }
 
 impl Update<'_> {
@@ -85,15 +96,17 @@ impl Update<'_> {
             if parser.word("xref") {
                 self.table(&mut parser, at)?;
                 let end = blank(parser.at);
+                self.starts.insert(0, at);
                 if !bytes[end..].starts_with(END) {
                     return Err(Broken("its end is missing"));
                 }
                 at = end + END.len();
                 self.ends.push(at);
             } else {
-                let (number, object) = object(&mut parser)?;
+                let (number, object, is_stream) = object(&mut parser)?;
                 let end = parser.at;
-                self.objects.entry(number).or_default().push((at, object));
+                let version = Version { at, object, is_stream };
+                self.objects.entry(number).or_default().push(version);
                 at = end;
             }
             at = blank(at);
@@ -124,12 +137,15 @@ impl Update<'_> {
     /// Whether only signatures were added.
     fn check(&self) -> Result<(), String> {
         let told = |Broken(says)| says.to_string();
+        if self.starts != self.after.starts {
+            return Err("its tables of places do not follow each other".into());
+        }
         for number in self.after.updated(&self.before).map_err(told)? {
             let number = u32::try_from(number).map_err(|_| "an object has no number")?;
             let there = self.after.place(number).map_err(told)?;
             let found = self.objects.get(&number).and_then(|all| all.last());
             let moved = match (there, found) {
-                (ObjectPosition::At(at), Some((place, _))) => at != *place,
+                (ObjectPosition::At(at), Some(version)) => at != version.at,
                 (ObjectPosition::Free, None) => self.is_known(number)?,
                 _ => true,
             };
@@ -139,14 +155,14 @@ impl Update<'_> {
         }
         let mut signatures = 0;
         for (number, versions) in &self.objects {
-            for (at, version) in versions {
+            for version in versions {
                 if self.is_known(*number)? {
                     self.changed(*number, version)?;
                 }
                 if self.after.place(*number).map_err(told)? == ObjectPosition::Free {
-                    return Err(format!("object {number} at byte {at} is in no table"));
+                    return Err(format!("object {number} is in no table"));
                 }
-                signatures += usize::from(self.is_signature(version));
+                signatures += usize::from(self.is_signature(&version.object));
             }
         }
         if signatures == 0 { Err("no signature is added".into()) } else { Ok(()) }
@@ -159,17 +175,19 @@ impl Update<'_> {
     }
 
     /// Whether a new version of an object differs by what a signature needs only.
-    fn changed(&self, number: u32, version: &Object) -> Result<(), String> {
+    fn changed(&self, number: u32, version: &Version) -> Result<(), String> {
         let told = |Broken(says)| says.to_string();
         let is = |object: Option<&Object>| object == Some(&Object::Reference(number));
         let old = self.before.object(number).map_err(told)?;
         let root = self.before.get(&self.before.trailer, "Root").map_err(told)?;
         let metadata = if let Object::Dict(root) = &root { root.get("Metadata") } else { None };
         // Producer and times; neither is on a page.
-        if old == *version || is(self.before.trailer.get("Info")) || is(metadata) {
+        if is(self.before.trailer.get("Info")) || is(metadata) {
             return Ok(());
         }
-        let (Object::Dict(old), Object::Dict(new)) = (&old, version) else {
+        let (Object::Dict(old), Object::Dict(new), false) =
+            (&old, &version.object, version.is_stream)
+        else {
             return Err(format!("an object is changed (object {number})"));
         };
         let (what, allowed) = if is(self.before.trailer.get("Root")) {
@@ -233,15 +251,19 @@ impl Update<'_> {
     }
 }
 
-/// An object with its number.
-fn object(parser: &mut Parser<'_>) -> Result<(u32, Object), Broken> {
+/// An object with its number, and whether it is a stream.
+fn object(parser: &mut Parser<'_>) -> Result<(u32, Object, bool), Broken> {
     let (number, _) = (parser.integer()?, parser.integer()?);
     let number = u32::try_from(number).map_err(|_| Broken("an object has no number"))?;
     if !parser.word("obj") {
         return Err(Broken("it has something else than objects"));
     }
     let object = parser.object(0)?;
-    if parser.word("stream") {
+    if !object.is_unique() {
+        return Err(Broken("a key stands twice in a dictionary"));
+    }
+    let is_stream = parser.word("stream");
+    if is_stream {
         let length = match &object {
             Object::Dict(dict) => dict.get("Length").and_then(Object::integer),
             _ => None,
@@ -249,12 +271,16 @@ fn object(parser: &mut Parser<'_>) -> Result<(u32, Object), Broken> {
         let start = parser.at;
         let line = [&b"\r\n"[..], b"\n"];
         let rest = parser.bytes.get(start..).unwrap_or_default();
-        let line = line.iter().find(|line| rest.starts_with(line)).map_or(0, |line| line.len());
-        let length = length.ok_or(Broken("a stream has no length"))?;
-        parser.at = start.saturating_add(line).saturating_add(length);
+        let line = line.iter().find(|line| rest.starts_with(line));
+        let (line, length) = line.zip(length).ok_or(Broken("a stream has no length"))?;
+        parser.at = start.saturating_add(line.len()).saturating_add(length);
         if !parser.word("endstream") {
             return Err(Broken("a stream does not end where it says"));
         }
     }
-    if parser.word("endobj") { Ok((number, object)) } else { Err(Broken("an object does not end")) }
+    if parser.word("endobj") {
+        Ok((number, object, is_stream))
+    } else {
+        Err(Broken("an object does not end"))
+    }
 }

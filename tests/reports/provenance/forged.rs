@@ -133,7 +133,37 @@ fn nothing_but_a_signature_may_follow_the_end() {
     );
     let mut hidden = signed(&whole, zeros, &[]);
     hidden.extend(b"\n% a comment that paints nothing yet\n");
-    let forged: [(&str, Vec<u8>, &str); 12] = [
+    // The same dictionary with other data.
+    let place = whole
+        .windows(format!("\n{contents} 0 obj\n").len())
+        .position(|part| part == format!("\n{contents} 0 obj\n").as_bytes())
+        .expect("the contents");
+    let end = place + whole[place..].windows(6).position(|part| part == b"stream").expect("data");
+    let of_contents =
+        String::from_utf8_lossy(&whole[place..end]).split_once("obj\n").expect("it").1.to_string();
+    let length = number_after(&of_contents, "/Length");
+    let blank = format!("{of_contents}stream\n{}\nendstream", " ".repeat(length));
+    let twice = of_page.strip_suffix(">>").expect("a dictionary").to_string()
+        + &format!("/Rotate 90/Rotate 0/Annots[{NEW} 0 R]>>");
+    // An earlier table that stands in the data of a new object.
+    let fake =
+        format!("xref\n{contents} 1\n0000000017 00000 n \ntrailer\n<</Size 9/Root {root} 0 R>>");
+    let hides = format!("<</Length {}>>\nstream\n{fake}\nendstream", fake.len());
+    let elsewhere = {
+        let sound = signed(&whole, zeros, &[(NEW + 2, hides)]);
+        let at = sound.windows(5).rposition(|part| part == b"/Prev").expect("the last one") + 6;
+        let inside = sound.windows(fake.len()).position(|part| part == fake.as_bytes());
+        let inside = inside.expect("the table");
+        let old = number_after(&String::from_utf8_lossy(&sound[at - 6..]), "/Prev ").to_string();
+        let new = format!("{inside:0width$}", width = old.len());
+        let mut moved = sound.clone();
+        moved[at..at + old.len()].copy_from_slice(new.as_bytes());
+        moved
+    };
+    let forged: [(&str, Vec<u8>, &str); 15] = [
+        ("same dictionary", signed(&whole, zeros, &[(contents, blank)]), "an object is changed"),
+        ("key twice", updated(&whole, &[(page, twice)], ""), "a key stands twice"),
+        ("another earlier table", elsewhere, "do not follow each other"),
         (
             "painted page",
             updated(&whole, &[(contents, painted.clone())], ""),
