@@ -35,10 +35,10 @@ quantity {name}
             (SigmaY_instability, safety, wheelset), (ayb_rms, safety, running_gear),
             (Q_max, loading, wheelset), (ay_max, loading, running_gear), (az_max, loading, running_gear),
             (ay_rms, loading, running_gear), (az_rms, loading, running_gear)
-  limit     {class} {name}_limit for zone 1 and each {place}
-  limit     {class}_zone_2 {name}_limit for zones 2, 3, 4 and each {place}
-  limit     {class}_zone_3 {name}_limit for zones 2, 3, 4 and each {place}
-  limit     {class}_zone_4 {name}_limit for zones 2, 3, 4 and each {place}
+  limit     {class} at most {name}_limit for zone 1 and each {place}
+  limit     {class}_zone_2 at most {name}_limit for zones 2, 3, 4 and each {place}
+  limit     {class}_zone_3 at most {name}_limit for zones 2, 3, 4 and each {place}
+  limit     {class}_zone_4 at most {name}_limit for zones 2, 3, 4 and each {place}
 
 quantity Y_qst
   limit  quasi_static_zone_2 Y_qst_limit_flat for zones 2, 3, 4 and each wheelset

@@ -562,7 +562,7 @@ quantity SigmaY_max "Sum of guiding forces, maximum"
   from    measured
   value   -p0.15 when direction is not left
   value   p99.85 when direction is not right
-  limit   safety SigmaY_max_limit for each zone and wheelset
+  limit   safety at most SigmaY_max_limit for each zone and wheelset
   note    "In curves the end of the distribution towards the outside; on straight track both ends, as two"
           "values of one sample."
 
@@ -573,7 +573,7 @@ quantity YQ_max "Ratio Y/Q, maximum"
   filter  LP20, then WINDOW
   from    measured
   value   p99.85
-  limit   safety YQ_max_limit for each zone and wheelset
+  limit   safety at most YQ_max_limit for each zone and wheelset
   note    "In curves the outer wheel; on straight track both wheels, each towards its own flange."
 
 quantity SigmaY_instability "Instability: sum of guiding forces, rms value over 100 m"
@@ -582,7 +582,7 @@ quantity SigmaY_instability "Instability: sum of guiding forces, rms value over 
   filter  HUNTING, then RMS_100
   from    measured
   value   maximum
-  limit   safety SigmaY_instability_limit for each zone and wheelset
+  limit   safety at most SigmaY_instability_limit for each zone and wheelset
 
 quantity ayb_rms "Instability: lateral acceleration of the bogie frame, rms value over 100 m"
   symbol  "ÿ+_rms"
@@ -590,7 +590,7 @@ quantity ayb_rms "Instability: lateral acceleration of the bogie frame, rms valu
   filter  HUNTING, then RMS_100
   from    measured
   value   maximum
-  limit   safety ayb_rms_limit for each zone and running_gear
+  limit   safety at most ayb_rms_limit for each zone and running_gear
 
 # ---- track loading
 quantity Q_max "Vertical wheel force, maximum"
@@ -600,7 +600,7 @@ quantity Q_max "Vertical wheel force, maximum"
   filter  LP20
   from    measured
   value   p99.85
-  limit   loading Q_max_limit for each zone and wheelset
+  limit   loading at most Q_max_limit for each zone and wheelset
 
 quantity Y_qst "Guiding force, quasi-static"
   symbol  "Y_qst"
@@ -635,7 +635,7 @@ quantity ay_max "Lateral acceleration of the car body, maximum"
   from    measured
   value   p99.85 when direction is not left
   value   -p0.15 when direction is not right
-  limit   loading ay_max_limit for each zone and running_gear
+  limit   loading at most ay_max_limit for each zone and running_gear
 
 quantity az_max "Vertical acceleration of the car body, maximum"
   symbol  "z̈*_max"
@@ -643,7 +643,7 @@ quantity az_max "Vertical acceleration of the car body, maximum"
   filter  BP
   from    measured
   value   larger of |p0.15|, |p99.85|
-  limit   loading az_max_limit for each zone and running_gear
+  limit   loading at most az_max_limit for each zone and running_gear
 
 quantity ay_rms "Lateral acceleration of the car body, rms value"
   symbol  "ÿ*_rms"
@@ -651,7 +651,7 @@ quantity ay_rms "Lateral acceleration of the car body, rms value"
   filter  BP
   from    measured
   value   rms
-  limit   loading ay_rms_limit for each zone and running_gear
+  limit   loading at most ay_rms_limit for each zone and running_gear
 
 quantity az_rms "Vertical acceleration of the car body, rms value"
   symbol  "z̈*_rms"
@@ -659,7 +659,7 @@ quantity az_rms "Vertical acceleration of the car body, rms value"
   filter  BP
   from    measured
   value   rms
-  limit   loading az_rms_limit for each zone and running_gear
+  limit   loading at most az_rms_limit for each zone and running_gear
 
 quantity ay_qst "Lateral acceleration of the car body, quasi-static"
   symbol  "ÿ*_qst"

@@ -9,7 +9,7 @@ use super::values::Values;
 use super::{overlap, printed};
 use crate::catalog::Best;
 use crate::metrics::rounded;
-use crate::result::Reason;
+use crate::result::{Direction, Reason};
 use crate::syntax::phrase::Limit as Written;
 
 /// What all limits of a quantity have in common.
@@ -109,13 +109,18 @@ impl Checker<'_> {
         } else {
             self.of_group(&written.bound, None, &of_bound)
         };
+        let direction = match (written.at_least, written.at_most) {
+            (true, _) => Direction::AtLeast,
+            (_, true) => Direction::AtMost,
+            _ => Direction::Magnitude,
+        };
         let bound = bound.and_then(|bound| {
             let of = estimate.unit.as_ref().zip(Some(&text.span)).or(common.unit);
             if applies.is_all() {
                 self.of_own_values(estimate, &bound, common.block);
             }
             let signed = matches!(common.best, Some((Best::Near(best), _)) if *best == 0.0);
-            if signed && !written.at_least {
+            if signed && direction == Direction::Magnitude {
                 self.signed_estimate(estimate, &written.statistic);
             }
             let expr = self.suitable_bound(bound.expr, written.at_least, of, common)?;
@@ -135,7 +140,7 @@ impl Checker<'_> {
         let printed = printed::naming_limit(&words, &others);
         Some(Limit {
             estimate: estimate.clone(),
-            at_least: written.at_least,
+            direction,
             bound: bound?,
             factors: factors?,
             only_when: only_when?,
@@ -300,7 +305,7 @@ impl Checker<'_> {
 
     /// A limit that refers to other limits and is a constant must be above zero.
     fn amounts(&mut self, limits: &[Limit], unit: Option<&Unit>) {
-        for limit in limits.iter().filter(|limit| !limit.at_least) {
+        for limit in limits.iter().filter(|limit| limit.direction != Direction::AtLeast) {
             let names = referred(&limit.bound.expr);
             let Some((name, place)) = names.first() else { continue };
             let value = number(&limit.bound.expr, &Others { limits, of: limit, depth: 0 });

@@ -13,7 +13,7 @@ pub fn find(limits: &[Limit], zone: Option<&Expr>, block: &Block, problems: &mut
             // is reported once.
             let pair = (other.span.start, limit.span.start);
             let alike = other.estimate.name == limit.estimate.name
-                && other.at_least == limit.at_least
+                && other.direction == limit.direction
                 && other.scope.each == limit.scope.each;
             if other.span == limit.span || !alike || said.contains(&pair) {
                 continue;

@@ -180,6 +180,7 @@ impl Checker<'_> {
             positions,
             chain,
             evaluation: Arc::new(compared.evaluation),
+            best: compared.best.map(|(best, _)| best.value()),
             only: if_written(only)?,
             limits: limits?.into_iter().map(Arc::new).collect(),
             reports: reports?.into_iter().map(Arc::new).collect(),

@@ -142,6 +142,10 @@ fn shown(value: Option<f64>) -> String {
     value.map_or("-".to_string(), |value| number::significant(value, 4))
 }
 
+fn bound(statistic: &StatisticResult) -> String {
+    format!("{}{}", statistic.direction.sign(), shown(statistic.limit))
+}
+
 fn ratio(statistic: &StatisticResult) -> String {
     let share = |share: f64| if share < 1000.0 { format!("{share:.3}") } else { "> 1000".into() };
     statistic.normalised.map_or("-".to_string(), share)
@@ -170,14 +174,17 @@ fn statistics(found: &Certification, console: &Console) -> String {
         // With too few pairs, statistics that are within their limits do not meet them.
         let open = quantity.holds.is_none() && quantity.reason.is_some();
         for (index, statistic) in estimates::single(quantity).into_iter().enumerate() {
-            let (name, unit) = if index == 0 { (&*quantity.id, &*quantity.unit) } else { ("", "") };
+            let first = index == 0;
+            let name = if first { &*quantity.id } else { "" };
+            let own = first || statistic.unit != quantity.unit;
             out += &format!(
-                "{name:width$}  {unit:>8}  {:<26} {:>5}  {:>4}  {:>12}  {:>12}  {:>8}  {}\n",
+                "{name:width$}  {:>8}  {:<26} {:>5}  {:>4}  {:>12}  {:>12}  {:>8}  {}\n",
+                if own { &*statistic.unit } else { "" },
                 format!("{}{}", statistic.title, statistic.scope.suffix()),
                 statistic.count,
                 statistic.n,
                 shown(statistic.value),
-                shown(statistic.limit),
+                bound(statistic),
                 ratio(statistic),
                 verdict(statistic.holds.filter(|_| !open), statistic.marginal && !open, console)
             );
@@ -228,7 +235,7 @@ fn estimated(found: &Certification, console: &Console) -> String {
             decisive.unit,
             decisive.title,
             shown(decisive.value),
-            shown(decisive.limit),
+            bound(decisive),
             ratio(decisive),
             if decisive.value.is_some() { place(limit) } else { "-".into() },
             limit.holding(),

@@ -58,7 +58,7 @@ fn pair(a: &[&Score], b: &[&Score]) -> Agreement {
     for one in a {
         let same = |other: &&&Score| other.campaign == one.campaign && other.section == one.section;
         let Some(other) = b.iter().find(same) else { continue };
-        scores.push((one.score, other.score));
+        scores.push((order(one), order(other)));
         contingency[usize::from(!meets(one))][usize::from(!meets(other))] += 1;
     }
     let limited = a.iter().chain(b).all(|score| score.limited);
@@ -87,7 +87,12 @@ fn pair(a: &[&Score], b: &[&Score]) -> Agreement {
 const EQUAL: f64 = 1e-12;
 
 fn meets(score: &Score) -> bool {
-    score.score <= 1.0 + EQUAL
+    score.score.is_some_and(|score| score <= 1.0 + EQUAL)
+}
+
+/// Where there is no ratio, the value is worse than any with one.
+fn order(score: &Score) -> (f64, f64) {
+    (score.score.unwrap_or(f64::INFINITY), score.shortfall.unwrap_or(0.0))
 }
 
 /// Campaigns by verdict: holds, does not hold, not assessable.

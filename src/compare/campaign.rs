@@ -151,7 +151,7 @@ impl Base<'_> {
         // One that does not hold is worse than any that does, also where no ratio can be formed.
         let worst =
             limits.filter(|(_, statistic)| statistic.holds.is_some()).max_by(|(_, a), (_, b)| {
-                let ratio = |ratio: Option<f64>| ratio.unwrap_or(0.0);
+                let ratio = |ratio: Option<f64>| ratio.unwrap_or(f64::INFINITY);
                 // The first of equal ones stands.
                 (a.holds == Some(false))
                     .cmp(&(b.holds == Some(false)))
@@ -206,23 +206,26 @@ impl Base<'_> {
 
     /// The score of every section by every metric, and by the protocol as a whole.
     fn scores(&self) -> Vec<Score> {
-        let mut found: IndexMap<(String, Option<String>, bool), f64> = IndexMap::new();
+        let mut found: IndexMap<(String, Option<String>, bool), (f64, f64)> = IndexMap::new();
         for one in self.evaluated.section_ratios(self.plan) {
             let quantity = &self.plan.quantities[one.quantity];
             let limit = one.limit.and_then(|limit| quantity.limits.get(limit)).map(AsRef::as_ref);
             let (limited, metric) = (limit.is_some(), metric::name(quantity, limit));
             for metric in std::iter::once(Some(metric)).chain(limited.then_some(None)) {
                 let score =
-                    found.entry((one.section.clone(), metric, limited)).or_insert(one.ratio);
-                *score = score.max(one.ratio);
+                    found.entry((one.section.clone(), metric, limited)).or_insert(one.score);
+                if one.score > *score {
+                    *score = one.score;
+                }
             }
         }
-        let score = |((section, metric, limited), score)| Score {
+        let score = |((section, metric, limited), (score, shortfall)): (_, (f64, f64))| Score {
             campaign: self.campaign.into(),
             section,
             protocol: self.protocol.into(),
             metric,
-            score,
+            score: Some(score).filter(|score| score.is_finite()),
+            shortfall: score.is_infinite().then_some(shortfall),
             limited,
         };
         found.into_iter().map(score).collect()

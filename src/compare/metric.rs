@@ -3,7 +3,7 @@
 use indexmap::IndexSet;
 
 use crate::check::plan::{EstimateKind, Evaluation, Limit, Plan, Quantity, Records};
-use crate::result::{QuantityResult, StatisticName, StatisticResult};
+use crate::result::{Direction, QuantityResult, StatisticName, StatisticResult};
 use crate::run::Judged;
 
 /// The metric of a limit, or of a quantity without one.
@@ -66,8 +66,10 @@ pub struct Number {
     pub limited: bool,
     /// The limit that it is of, among those of the protocol.
     pub of: String,
-    /// With its sign where that has a meaning.
+    /// Value / limit with its sign where that has a meaning; without a limit the value.
     pub value: f64,
+    /// The share of the limit, where there is one.
+    pub share: Option<f64>,
 }
 
 /// The numbers of every metric.
@@ -82,6 +84,7 @@ pub fn numbers(plan: &Plan, judged: &Judged) -> Vec<Number> {
                 limited: true,
                 of: limit,
                 value: ratio,
+                share: statistic.normalised,
             });
         }
         if quantity.statistics.is_empty()
@@ -92,6 +95,7 @@ pub fn numbers(plan: &Plan, judged: &Judged) -> Vec<Number> {
                 limited: false,
                 of: quantity.id.clone(),
                 value,
+                share: None,
             });
         }
     }
@@ -99,11 +103,10 @@ pub fn numbers(plan: &Plan, judged: &Judged) -> Vec<Number> {
 }
 
 fn signed(statistic: &StatisticResult) -> Option<f64> {
-    let ratio = statistic.normalised?;
-    // The worst of several values may be of either sign.
-    let sign =
-        if statistic.name != StatisticName::Each && statistic.value? < 0.0 { -1.0 } else { 1.0 };
-    Some(sign * ratio)
+    let ratio = Some(statistic.value? / statistic.limit?).filter(|ratio| ratio.is_finite())?;
+    // The worst of several magnitudes may be of either sign.
+    let each = statistic.name == StatisticName::Each;
+    Some(if each && statistic.direction == Direction::Magnitude { ratio.abs() } else { ratio })
 }
 
 fn mean(quantity: &QuantityResult) -> Option<f64> {

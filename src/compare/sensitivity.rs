@@ -35,8 +35,9 @@ impl Moved {
                 self.metrics.len() - 1
             });
             let metric = &mut self.metrics[at];
-            let size = number.value.abs();
-            metric.largest = Some(metric.largest.map_or(size, |known| known.max(size)));
+            if let Some(share) = number.share {
+                metric.largest = Some(metric.largest.map_or(share, |known| known.max(share)));
+            }
             if let Some(before) = before {
                 metric.squares += (number.value - before.value).powi(2);
                 metric.count += 1;

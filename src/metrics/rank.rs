@@ -1,15 +1,17 @@
 //! Rank correlation.
 
+use std::cmp::Ordering;
+
 /// Spearman's rank correlation: the correlation of ranks, equal values sharing the mean of their
 /// ranks.
 ///
 /// `None` with fewer than three pairs, of which any two correlate fully, or where all values of one
 /// side are equal.
-pub fn spearman(pairs: &[(f64, f64)]) -> Option<f64> {
+pub fn spearman<T: Copy + PartialOrd>(pairs: &[(T, T)]) -> Option<f64> {
     if pairs.len() < 3 {
         return None;
     }
-    let (a, b): (Vec<f64>, Vec<f64>) = pairs.iter().copied().unzip();
+    let (a, b): (Vec<T>, Vec<T>) = pairs.iter().copied().unzip();
     let (a, b) = (ranks(&a), ranks(&b));
     // The mean of ranks is the same with and without ties.
     let mean = (pairs.len() as f64 + 1.0) / 2.0;
@@ -20,9 +22,9 @@ pub fn spearman(pairs: &[(f64, f64)]) -> Option<f64> {
 }
 
 /// Ranks from 1; equal values have the mean of their ranks.
-pub fn ranks(values: &[f64]) -> Vec<f64> {
+pub fn ranks<T: PartialOrd>(values: &[T]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..values.len()).collect();
-    order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
+    order.sort_by(|&a, &b| values[a].partial_cmp(&values[b]).unwrap_or(Ordering::Equal));
     let mut ranks = vec![0.0; values.len()];
     let mut first = 0;
     for equal in order.chunk_by(|&a, &b| values[a] == values[b]) {

@@ -115,7 +115,7 @@ pub fn representatives(quantity: &QuantityResult) -> Vec<&StatisticResult> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::result::{RulePlace, Sample, Scope, StatisticName};
+    use crate::result::{Direction, RulePlace, Sample, Scope, StatisticName};
 
     fn result(zone: &str, holds: Option<bool>, normalised: Option<f64>) -> StatisticResult {
         StatisticResult {
@@ -130,11 +130,13 @@ mod tests {
             interval: None,
             marginal: false,
             limit: None,
+            direction: Direction::Magnitude,
             normalised,
             sample: Sample::default(),
             regression: None,
             divided_at: None,
             outside: Vec::new(),
+            beyond: None,
             holds,
             factors: Vec::new(),
             limit_text: "1 kN".into(),

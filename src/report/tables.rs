@@ -185,7 +185,7 @@ fn of_quantities(all: &[QuantityResult], campaign: &str) -> Result<Vec<File>, cs
     let mut files = vec![
         table(
             "summary",
-            "quantity, title, filter, processing, statistic = name, scope, pairs = count, n, unit, value, low 95 % = interval/0, high 95 % = interval/1, limit, normalised, holds, marginal, reason",
+            "quantity, title, filter, processing, statistic = name, scope, pairs = count, n, unit, value, low 95 % = interval/0, high 95 % = interval/1, limit, direction, normalised, holds, marginal, reason",
             statistics,
         )?,
         table(
@@ -369,7 +369,11 @@ pub fn comparison(found: &Comparison) -> Result<Vec<File>, csv::Error> {
             "campaign, protocol, metric, quantity, estimate, scope, unit, value, limit, ratio, holds, reason",
             &found.ratios,
         )?,
-        table("scores", "campaign, section, protocol, metric, score, limited", &found.scores)?,
+        table(
+            "scores",
+            "campaign, section, protocol, metric, score, shortfall, limited",
+            &found.scores,
+        )?,
         table(
             "agreement",
             "of, protocol, a, b, sections, both met = contingency/0/0, a only = contingency/0/1, b only = contingency/1/0, neither = contingency/1/1, spearman, reason",

@@ -83,7 +83,7 @@ pub struct Ratio {
     pub unit: String,
     pub value: Option<f64>,
     pub limit: Option<f64>,
-    /// |value| / limit; limit / value where the limit is a least value.
+    /// As [`Direction::share`](super::Direction::share).
     pub ratio: Option<f64>,
     pub holds: Option<bool>,
     #[serde(flatten, with = "told::reason")]
@@ -99,8 +99,12 @@ pub struct Score {
     pub protocol: String,
     /// `None` of the protocol as a whole.
     pub metric: Option<String>,
-    pub score: f64,
-    /// Whether the score is a ratio to a limit; else the value itself.
+    /// `None` where a value has no ratio to a limit that it does not reach: worse than any ratio.
+    pub score: Option<f64>,
+    /// Then how far the value is below the limit, as a share of the limit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shortfall: Option<f64>,
+    /// Whether the score is a ratio to a limit; else how far the value is from the best one.
     pub limited: bool,
 }
 
@@ -143,7 +147,7 @@ pub struct Sensitivity {
     #[serde(flatten, with = "told::reasons")]
     #[schemars(with = "told::EachReason<Reason>")]
     pub reasons: Vec<Option<Reason>>,
-    /// The largest |value| / limit.
+    /// The largest ratio of value and limit.
     pub largest: Vec<Option<f64>>,
     /// Number of verdicts of the protocol that differ from those of the records as they are.
     pub verdicts_changed: Vec<usize>,

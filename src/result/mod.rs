@@ -6,11 +6,13 @@
 pub mod blind;
 pub mod comparison;
 pub mod diagnosis;
+mod direction;
 pub mod domain;
 pub mod finding;
 pub mod found;
 mod kind;
 pub mod origin;
+mod pair;
 mod parts;
 mod quantity;
 mod reason;
@@ -26,16 +28,18 @@ pub mod verdict;
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 
+pub use direction::Direction;
 pub use domain::{CoordinateRange, DomainResult, DomainSection, WantedPoint};
 pub use finding::{Consequence, Finding, Occurrence};
 pub use kind::{Kind, VerdictWords};
 pub use origin::{FittedTo, ImportedOne, ImportedSide, OriginInfo};
+pub use pair::PairValue;
 pub use parts::{
     Beyond, Channels, Datum, GivenVerdict, LimitNotMet, OfVehicle, Sections, ShortZone, Subject,
     SuspectedFactor, VehicleValue,
 };
 pub use quantity::{
-    Count, Figures, GroupRegression, GroupResult, LimitFactor, Outside, PairValue, QuantityResult,
+    Count, Figures, GroupRegression, GroupResult, LimitFactor, Outside, QuantityResult,
     RegressionAt, RegressionFigure, RegressionPoint, Reported, Sample, StatisticResult,
 };
 pub use reason::{FindingData, Reason, UnusedSection};

@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::scope::map;
-use super::{Reason, RecordName, RulePlace, Scope, Spread, StatisticName, told, zones};
+use super::{Direction, PairValue, Reason, RulePlace, Scope, Spread, StatisticName, told};
 
 /// One quantity of the protocol: its processing, its values and its verdict.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
@@ -123,7 +123,13 @@ impl QuantityResult {
                 normalised_std: std.and_then(|std| std.normalised),
             }
         } else {
-            let share = |statistic: &StatisticResult| statistic.normalised.unwrap_or(-1.0);
+            // A value without a ratio does not reach its limit.
+            let share = |statistic: &StatisticResult| match (statistic.normalised, statistic.holds)
+            {
+                (Some(share), _) => share,
+                (None, Some(false)) => f64::INFINITY,
+                (None, _) => f64::NEG_INFINITY,
+            };
             let worst = self.statistics.iter().max_by(|a, b| share(a).total_cmp(&share(b)));
             let statistic = worst.map(|worst| worst.name.clone());
             let value = worst.and_then(|worst| worst.value);
@@ -138,6 +144,39 @@ impl QuantityResult {
         self.groups =
             self.from.as_ref().map(|_| self.statistics.iter().map(GroupResult::of).collect());
         self
+    }
+
+    /// The limit that values without limits of their own are set against: that of the standard
+    /// deviation, or else the first one. Those of an assessed quantity differ from zone to zone.
+    pub fn yardstick(&self) -> Option<(&StatisticResult, f64)> {
+        let pooled = |one: &&StatisticResult| one.name != StatisticName::Each;
+        let all = || self.statistics.iter().filter(|_| self.from.is_none()).filter(pooled);
+        let one = all().find(|one| one.name == StatisticName::StandardDeviation).or(all().next())?;
+        let same = one.unit == self.unit && one.divided_at.is_none();
+        Some((one, one.limit.filter(|limit| same && *limit > 0.0)?))
+    }
+
+    /// The values with the share of their limit, the worst first; equal ones in the order of the
+    /// campaign.
+    pub fn worst_first(&self) -> Vec<(&PairValue, Option<f64>)> {
+        let (own, yardstick) =
+            (self.values.iter().any(|one| one.limit.is_some()), self.yardstick());
+        let least = self.statistics.first().is_some_and(|one| one.direction == Direction::AtLeast);
+        let of = |pair: &'_ PairValue| {
+            let (share, limited) = match yardstick {
+                _ if own => (pair.ratio, pair.limit.is_some()),
+                Some((one, limit)) => (one.direction.share(pair.difference, limit), true),
+                None => (None, false),
+            };
+            // One without a share does not reach its limit.
+            let size = if least { -pair.difference } else { pair.difference.abs() };
+            (limited, if limited { share.unwrap_or(f64::INFINITY) } else { 0.0 }, size, share)
+        };
+        let mut all: Vec<_> = self.values.iter().map(|pair| (pair, of(pair))).collect();
+        all.sort_by(|(_, a), (_, b)| {
+            b.0.cmp(&a.0).then(b.1.total_cmp(&a.1)).then(b.2.total_cmp(&a.2))
+        });
+        all.into_iter().map(|(pair, (.., share))| (pair, share)).collect()
     }
 
     /// A statistic of all its values.
@@ -174,7 +213,9 @@ pub struct StatisticResult {
     /// The interval contains the limit: another choice of sections could change the result.
     pub marginal: bool,
     pub limit: Option<f64>,
-    /// |value| / limit.
+    #[serde(default, skip_serializing_if = "Direction::is_default")]
+    pub direction: Direction,
+    /// As [`Direction::share`].
     pub normalised: Option<f64>,
     /// Mean and standard deviation of the values of the group, in the unit of the quantity.
     pub sample: Sample,
@@ -188,6 +229,9 @@ pub struct StatisticResult {
     /// Of an estimate with regressions: regressors that are read outside their data.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub outside: Vec<Outside>,
+    /// Of an estimate with regressions that lies far beyond its values: the least and the largest.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub beyond: Option<(f64, f64)>,
     pub holds: Option<bool>,
     /// Factors of the limit that depend on vehicle data.
     pub factors: Vec<LimitFactor>,
@@ -388,104 +432,4 @@ pub struct LimitFactor {
     #[serde(flatten, with = "told::because")]
     #[schemars(with = "told::Because<Reason>")]
     pub because: Reason,
-}
-
-/// One section and signal.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(into = "PairInFile", from = "PairInFile")]
-pub struct PairValue {
-    /// Which of several campaigns.
-    pub campaign: Option<String>,
-    /// Name of the section (or of the record, without sections).
-    pub section: String,
-    pub zone: Option<String>,
-    pub signal: String,
-    /// Which of the quantity's values, in words, where it has several.
-    pub taken: Option<String>,
-    /// Which record, where the campaign has several of a side.
-    pub record: Option<RecordName>,
-    pub simulated: Option<f64>,
-    pub measured: Option<f64>,
-    /// What estimates are taken of: the difference; of a quantity without sides its metric, or the
-    /// value that is assessed.
-    pub difference: f64,
-    /// Number of samples (or windows) of the measured value.
-    pub samples: usize,
-}
-
-impl PairValue {
-    /// The signal, and which value and record it is where there are several: `SigmaY_1, p99.85`.
-    #[must_use]
-    pub fn label(&self) -> String {
-        let record = self.record.as_ref().map(ToString::to_string);
-        [Some(self.signal.clone()), self.taken.clone(), record]
-            .into_iter()
-            .flatten()
-            .collect::<Vec<_>>()
-            .join(", ")
-    }
-}
-
-/// A value as it stands in files: a difference with both sides, or a value by itself.
-#[derive(Serialize, Deserialize, JsonSchema)]
-struct PairInFile {
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    campaign: Option<String>,
-    section: String,
-    #[serde(with = "zones")]
-    #[schemars(with = "Option<zones::InFile>")]
-    zone: Option<String>,
-    signal: String,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    taken: Option<String>,
-    #[serde(flatten)]
-    record: Option<RecordName>,
-    #[serde(flatten)]
-    number: NumberInFile,
-    samples: usize,
-}
-
-/// See [`PairInFile`].
-#[derive(Serialize, Deserialize, JsonSchema)]
-#[serde(untagged)]
-enum NumberInFile {
-    Difference { simulated: Option<f64>, measured: Option<f64>, difference: f64 },
-    Value { value: f64 },
-}
-
-impl From<PairValue> for PairInFile {
-    fn from(pair: PairValue) -> Self {
-        let PairValue { simulated, measured, difference, .. } = pair;
-        let number = if simulated.is_some() || measured.is_some() {
-            NumberInFile::Difference { simulated, measured, difference }
-        } else {
-            NumberInFile::Value { value: difference }
-        };
-        let PairValue { campaign, section, zone, signal, taken, record, samples, .. } = pair;
-        Self { campaign, section, zone, signal, taken, record, number, samples }
-    }
-}
-
-impl From<PairInFile> for PairValue {
-    fn from(file: PairInFile) -> Self {
-        let (simulated, measured, difference) = match file.number {
-            NumberInFile::Difference { simulated, measured, difference } => {
-                (simulated, measured, difference)
-            }
-            NumberInFile::Value { value } => (None, None, value),
-        };
-        let PairInFile { campaign, section, zone, signal, taken, record, samples, .. } = file;
-        Self {
-            campaign,
-            section,
-            zone,
-            signal,
-            taken,
-            record,
-            simulated,
-            measured,
-            difference,
-            samples,
-        }
-    }
 }

@@ -505,6 +505,19 @@ pub enum FindingData {
         high: f64,
         unit: String,
     },
+    /// Estimates with regressions lie far beyond the values that they are from. The farthest one, and
+    /// the range of its values.
+    BeyondMeasured {
+        quantity: String,
+        estimates: usize,
+        estimate: String,
+        group: Option<String>,
+        value: f64,
+        count: usize,
+        low: f64,
+        high: f64,
+        unit: String,
+    },
     /// A point of wanted operation lies outside the sections; the distance is in their range.
     OutsideDomain {
         title: String,

@@ -3,7 +3,7 @@
 use crate::catalog::Statistic;
 use crate::metrics::moments::Moment;
 use crate::metrics::percentile::{Method, percentile};
-use crate::result::{Reason, Scope, StatisticName, UnusedSection};
+use crate::result::{Direction, Reason, Scope, StatisticName, UnusedSection};
 use crate::run::pool::{Estimator, Pool, Pooled, PooledLimit, PooledMinimum, PooledQuantity, Rule};
 
 /// Tolerance for rounding where a value equals its limit, which counts as met. Relative to the
@@ -56,7 +56,7 @@ pub struct Measure {
     pub title: String,
     pub scope: Scope,
     pub limit: f64,
-    pub at_least: bool,
+    pub direction: Direction,
     pub kind: Kind,
     evaluated: Evaluated,
     /// Factor of a value before it is compared with `low` and `high`.
@@ -299,7 +299,11 @@ fn measure(pooled: &PooledQuantity, limit: &PooledLimit) -> Measure {
         }
         Pooled::Statistic(statistic, ddof) => {
             // Every value meets its limit if the one nearest to it does.
-            let nearest = if limit.at_least { "minimum" } else { "peak" };
+            let nearest = match limit.direction {
+                Direction::Magnitude => "peak",
+                Direction::AtMost => "maximum",
+                Direction::AtLeast => "minimum",
+            };
             let each = *statistic == Statistic::Each;
             let over = Statistic::named(nearest).filter(|_| each).unwrap_or(*statistic);
             (statistic.name(), each, Evaluated::Statistic(over, *ddof))
@@ -320,8 +324,11 @@ fn measure(pooled: &PooledQuantity, limit: &PooledLimit) -> Measure {
         _ => (1.0, 1.0),
     };
     let room = EQUAL * bound.abs();
-    let (low, high) =
-        if limit.at_least { (bound - room, f64::INFINITY) } else { (-bound - room, bound + room) };
+    let (low, high) = match limit.direction {
+        Direction::Magnitude => (-bound - room, bound + room),
+        Direction::AtMost => (f64::NEG_INFINITY, bound + room),
+        Direction::AtLeast => (bound - room, f64::INFINITY),
+    };
     let of_section = |(at, values): (usize, &Vec<(usize, f64)>)| {
         if !limit.inside[at] {
             return Vec::new();
@@ -338,7 +345,7 @@ fn measure(pooled: &PooledQuantity, limit: &PooledLimit) -> Measure {
         title: limit.title.clone(),
         scope: limit.scope.clone(),
         limit: if each { 1.0 } else { limit.bounds[0] },
-        at_least: limit.at_least,
+        direction: limit.direction,
         kind,
         evaluated,
         scale,
@@ -349,6 +356,15 @@ fn measure(pooled: &PooledQuantity, limit: &PooledLimit) -> Measure {
 }
 
 impl Measure {
+    /// Whether the lower of two values is nearer to the limit, or farther beyond it.
+    pub fn low_is_worse(&self, low: f64, high: f64) -> bool {
+        match self.direction {
+            Direction::Magnitude => -low > high,
+            Direction::AtMost => false,
+            Direction::AtLeast => true,
+        }
+    }
+
     /// The statistic over some sections divided by the limit; `None` where it is not defined.
     pub fn over(&self, sections: impl Iterator<Item = usize>) -> Option<f64> {
         let (statistic, ddof) = match &self.evaluated {

@@ -5,7 +5,7 @@ use super::case::Case;
 use crate::result::study::{
     Importance, QuantitySpread, Share, Spread, StatisticSpread, WorstSelection,
 };
-use crate::result::{Reason, StatisticName};
+use crate::result::{Direction, Reason, StatisticName};
 
 /// Results of many selections.
 #[derive(Debug)]
@@ -59,7 +59,7 @@ impl Counted {
                     title: measure.title.clone(),
                     scope: measure.scope.clone(),
                     limit: measure.limit,
-                    at_least: measure.at_least,
+                    at_least: measure.direction == Direction::AtLeast,
                     overall: measure.over(usable.iter().copied()),
                     failing: share_of(found.failing),
                     reason: found.spread.is_none().then_some(Reason::UndefinedInAnySelection),

@@ -74,8 +74,11 @@ pub fn over_all(
 
 fn with_worst(measure: &Measure, listed: Option<Listed>, ends: Ends, failing: u64) -> OverAll {
     let worst = listed.zip(ends).map(|(listed, (at_min, at_max))| {
-        let low = if measure.at_least { true } else { -listed.min > listed.max };
-        if low { (at_min, listed.min) } else { (at_max, listed.max) }
+        if measure.low_is_worse(listed.min, listed.max) {
+            (at_min, listed.min)
+        } else {
+            (at_max, listed.max)
+        }
     });
     OverAll { spread: listed, failing, worst }
 }

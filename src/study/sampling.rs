@@ -54,7 +54,7 @@ impl Count for Drawn<'_> {
             let limit = &mut limits[number];
             limit.failing += u64::from(!measure.holds(value));
             limit.values.push(value);
-            let badness = if measure.at_least { -value } else { value.abs() };
+            let badness = if measure.low_is_worse(value, value) { -value } else { value };
             if limit.worst.as_ref().is_none_or(|(worst, _)| badness > *worst) {
                 limit.worst = Some((badness, selection.clone()));
             }
@@ -135,7 +135,7 @@ fn worst_known(case: &Case, measure: &Measure) -> Option<Vec<usize>> {
     let (least, greatest) = Additive::of(case, measure)?.ends();
     let value = |selection: &[usize]| measure.over(selection.iter().copied());
     let (low, high) = (value(&least)?, value(&greatest)?);
-    let worst = if measure.at_least || -low > high { (low, least) } else { (high, greatest) };
+    let worst = if measure.low_is_worse(low, high) { (low, least) } else { (high, greatest) };
     (!measure.holds(worst.0)).then_some(worst.1)
 }
 

@@ -224,6 +224,7 @@ pub struct Limit {
     /// The estimate as an expression.
     pub estimate: Phrase,
     pub at_least: bool,
+    pub at_most: bool,
     pub bound: Phrase,
     pub factors: Vec<(Phrase, Phrase)>,
     pub only_when: Option<Phrase>,
@@ -305,7 +306,7 @@ impl Limit {
     /// Whether both are of the same estimate, in the same direction and for the same values.
     pub fn same_slot(&self, other: &Self) -> bool {
         self.estimate == other.estimate
-            && self.at_least == other.at_least
+            && (self.at_least, self.at_most) == (other.at_least, other.at_most)
             && self.scope == other.scope
     }
 }

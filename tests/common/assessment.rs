@@ -48,6 +48,8 @@ fn quantity(found: &Certification) -> QuantityResult {
                     measured: None,
                     difference: 20.0 + (at % 7) as f64 + shift,
                     samples: 400,
+                    limit: None,
+                    ratio: None,
                 });
             }
         }
@@ -161,6 +163,8 @@ fn estimate(name: &str, zone: &str, wheelset: &str, values: &[PairValue]) -> Sta
         sample: Sample { mean: Some(23.25), std: Some(2.0) },
         regression,
         outside: Vec::new(),
+        beyond: None,
+        direction: fishplate::result::Direction::Magnitude,
         divided_at: None,
         holds: (!open).then_some(value <= 46.0),
         factors: Vec::new(),

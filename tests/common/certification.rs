@@ -373,6 +373,8 @@ fn quantity(kind: &Kind, sections: &[SectionResult], noise: &mut Noise) -> Quant
                 measured: Some(measured),
                 difference,
                 samples: 1840,
+                limit: None,
+                ratio: None,
             });
         }
     }
@@ -397,6 +399,8 @@ fn quantity(kind: &Kind, sections: &[SectionResult], noise: &mut Noise) -> Quant
         regression: None,
         divided_at: None,
         outside: Vec::new(),
+        beyond: None,
+        direction: fishplate::result::Direction::Magnitude,
         holds: Some(value.abs() <= limit),
         factors: Vec::new(),
         limit_text: text.into(),
@@ -475,6 +479,8 @@ fn metric(sections: &[SectionResult], noise: &mut Noise) -> QuantityResult {
                 measured: None,
                 difference: value,
                 samples: 12_840,
+                limit: None,
+                ratio: None,
             })
         })
         .collect();
@@ -496,6 +502,8 @@ fn metric(sections: &[SectionResult], noise: &mut Noise) -> QuantityResult {
             regression: None,
             divided_at: None,
             outside: Vec::new(),
+            beyond: None,
+            direction: fishplate::result::Direction::Magnitude,
             holds: Some(true),
             factors: Vec::new(),
             limit_text: "0.3".into(),

@@ -297,6 +297,8 @@ fn quantity(made: &Made, sections: &[SectionResult], noise: &mut Noise) -> Quant
                 measured: Some(measured),
                 difference,
                 samples: 4000 + 17 * nth,
+                limit: None,
+                ratio: None,
             });
         }
     }
@@ -362,6 +364,8 @@ fn statistics(values: &[PairValue], unit: &str, limit: f64) -> Vec<StatisticResu
             regression: None,
             divided_at: None,
             outside: Vec::new(),
+            beyond: None,
+            direction: fishplate::result::Direction::Magnitude,
             holds: Some(value.abs() <= limit),
             factors: Vec::new(),
             limit_text: text.into(),

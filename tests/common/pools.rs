@@ -3,8 +3,8 @@
 #![allow(dead_code, reason = "each test file uses a part of it")]
 
 use fishplate::catalog::Statistic;
-use fishplate::result::Scope;
 use fishplate::result::study::Spread;
+use fishplate::result::{Direction, Scope};
 use fishplate::run::pool::{Pooled, PooledLimit, PooledQuantity, Section, Zone};
 use fishplate::study::case::Case;
 use fishplate::study::halves::subsets;
@@ -18,7 +18,7 @@ pub fn limit(statistic: &str, bound: f64, ddof: usize, sections: usize) -> Poole
     let statistic = named(statistic);
     PooledLimit {
         estimate: Pooled::Statistic(statistic, ddof),
-        at_least: false,
+        direction: Direction::Magnitude,
         title: statistic.title(ddof),
         scope: Scope::default(),
         inside: vec![true; sections],

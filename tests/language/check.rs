@@ -17,6 +17,7 @@ use fishplate::check::{self, Override, Overrides};
 use fishplate::graph;
 use fishplate::library;
 use fishplate::problem::{Problem, Problems, Severity};
+use fishplate::result::Direction;
 use fishplate::source::Source;
 use fishplate::syntax::document::Text;
 use fishplate::syntax::{self, print_text, print_yaml};
@@ -294,7 +295,11 @@ fn described(plan: &Plan) -> String {
         );
         for limit in &quantity.limits {
             let bound = check::evaluate::shape(&limit.bound.expr);
-            let least = if limit.at_least { " at least" } else { "" };
+            let least = match limit.direction {
+                Direction::Magnitude => "",
+                Direction::AtMost => " at most",
+                Direction::AtLeast => " at least",
+            };
             let zones = limit.scope.zones.join(", ");
             let zones = if zones.is_empty() { zones } else { format!(" for {zones}") };
             let each: String =

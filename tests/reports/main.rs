@@ -13,6 +13,7 @@ mod common {
 }
 
 mod figures;
+mod limits;
 mod provenance;
 mod report_html;
 mod report_pdf;

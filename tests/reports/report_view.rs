@@ -366,7 +366,7 @@ fn words_follow_what_the_quantities_are() {
     };
     assert_eq!(
         word(&found),
-        ["Validation report".into(), "not validated".into(), facts("Compared pairs")]
+        ["Validation report".into(), "not validated".into(), facts("Pairs per quantity")]
     );
     found.quantities.extend(assessment::certification().quantities);
     assert_eq!(
@@ -374,7 +374,7 @@ fn words_follow_what_the_quantities_are() {
         [
             "Validation and assessment report".into(),
             "requirements not met".into(),
-            facts("Compared pairs, Assessed values")
+            facts("Pairs per quantity, Assessed values")
         ]
     );
     found.quantities.truncate(2);

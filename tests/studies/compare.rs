@@ -322,3 +322,92 @@ fn wrong_input_is_told_and_nothing_is_written() {
     }
     assert!(!Path::new(&out).exists());
 }
+
+/// A correlation, the same with the other sign, both at least 0.5, and without a limit: the scores
+/// follow from the correlations of `certify`.
+#[test]
+fn a_value_below_zero_does_not_reach_a_least_value() {
+    let temp = tempfile::tempdir().expect("a folder");
+    let protocol = |name: &str, metrics: &[(&str, &str)]| {
+        let mut text = format!(
+            "protocol {name} \"{name}\"\n  extends  en14363-2016-annex-t\n\nremove\n  quantity  every\n  plausibility  every\n"
+        );
+        for (at, (metric, end)) in metrics.iter().enumerate() {
+            text += &format!(
+                "\nquantity r{at} \"r{at}\"\n  of  Y at wheelset 1 and side R\n  filter  LP20\n  metric  {metric}\n  {end}\n"
+            );
+        }
+        let path = temp.path().join(format!("{name}.fp"));
+        fs::write(&path, text).expect("written");
+        path.display().to_string()
+    };
+    let least = "limit  each at least 0.5";
+    let limited = protocol("limited", &[("correlation", least), ("-1 * correlation", least)]);
+    let free = protocol("free", &[("correlation", "reported  \"A number.\"")]);
+    let found = compare(
+        &temp.path().join("out"),
+        &[
+            "examples/coach-good",
+            "--protocol",
+            &limited,
+            "--protocol",
+            &free,
+            "--sizes",
+            "none",
+            "--no-report",
+        ],
+    );
+    let own = temp.path().join("own").display().to_string();
+    let (_, _, said) = run(&[
+        "certify",
+        "examples/coach-good",
+        "--quiet",
+        "--only",
+        "results",
+        "--protocol",
+        &free,
+        "--out",
+        &own,
+    ]);
+    let results: Value = serde_json::from_str(
+        &fs::read_to_string(temp.path().join("own/results.json"))
+            .unwrap_or_else(|_| panic!("{said}")),
+    )
+    .expect("JSON");
+    let correlations = results["quantities"][0]["values"].as_array().expect("values");
+    assert_eq!(correlations.len(), 13);
+    let score = |protocol: &str, metric: &str, section: &Value| {
+        let all = found["scores"].as_array().expect("scores").iter();
+        let mut own = all.filter(|one| {
+            one["protocol"] == protocol
+                && one["metric"].as_str().unwrap_or("all") == metric
+                && one["section"] == *section
+        });
+        let first = own.next().unwrap_or_else(|| panic!("{metric} {section}: {}", found["scores"]));
+        (first["score"].as_f64(), first["shortfall"].as_f64())
+    };
+    let near =
+        |found: Option<f64>, wanted: f64| found.is_some_and(|found| (found - wanted).abs() < 1e-12);
+    let mut met = 0;
+    for one in correlations {
+        let (r, section) = (one["value"].as_f64().expect("a number"), &one["section"]);
+        assert!(r > 0.0, "the case");
+        met += u64::from(r >= 0.5);
+        let (plain, minus) = (score("limited", "correlation", section), "-1 * correlation");
+        assert!(near(plain.0, 0.5 / r) && plain.1.is_none(), "{r} {plain:?}");
+        // Neither the metric nor the protocol is met there.
+        for metric in [minus, "all"] {
+            let (ratio, shortfall) = score("limited", metric, section);
+            assert!(
+                ratio.is_none() && near(shortfall, 1.0 + r / 0.5),
+                "{r} {ratio:?} {shortfall:?}"
+            );
+        }
+        assert!(near(score("free", "correlation", section).0, 1.0 - r));
+    }
+    let agreement = found["agreement"].as_array().expect("a list");
+    let metrics = agreement.iter().find(|one| one["of"] == "metrics").expect("two metrics");
+    assert_eq!(metrics["contingency"], serde_json::json!([[0, met], [0, 13 - met]]));
+    // The better the correlation, the worse the same with the other sign.
+    assert_eq!(metrics["spearman"].as_f64(), Some(-1.0));
+}

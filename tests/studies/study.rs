@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use crate::common::pools::{every, limit, quantity, sections, sorted, zones};
 use fishplate::result::study::Spread;
-use fishplate::result::{StatisticName, Verdict};
+use fishplate::result::{Direction, StatisticName, Verdict};
 use fishplate::run::pool::{Pool, Rule, Section};
 use fishplate::study::case::Case;
 use fishplate::study::random::{Random, draw};
@@ -200,9 +200,10 @@ proptest! {
             with_limits.minimum_pairs = minimum_pairs;
             quantities.push(with_limits);
         }
-        quantities[2].limits[0].at_least = true;
-        quantities[4].limits[0].at_least = true;
-        quantities[6].limits[0].at_least = seed % 2 == 0;
+        quantities[2].limits[0].direction = Direction::AtLeast;
+        quantities[4].limits[0].direction = Direction::AtLeast;
+        quantities[6].limits[0].direction =
+            if seed % 2 == 0 { Direction::AtLeast } else { Direction::AtMost };
         let rule = [Rule::EveryLimit, Rule::AtLeastQuantities(6), Rule::AtLeastLimits(7)][rule];
         let pool = Pool { sections: sections(&counts), zones: zones(&takes), minimum: 1, quantities, rule: Some(rule) };
         let case = Case::of(&pool, None).expect("a case");

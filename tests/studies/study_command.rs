@@ -105,6 +105,35 @@ fn offsets_of_nothing_change_nothing() {
     assert_ne!(offsets[2]["quantities"], sections["quantities"]);
 }
 
+/// The selections of three of each zone's sections, counted from the table of sections, are the same
+/// at every offset: what the study moves is no fault of the data.
+#[test]
+fn every_offset_has_the_sections_of_the_records() {
+    let out = tempfile::tempdir().expect("a folder");
+    let folder = out.path().display().to_string();
+    let (code, said, _) = run(&["study", "sync", "examples/coach-good", "--out", &folder]);
+    assert_eq!(code, 0, "{said}");
+    let table = fs::read_to_string(
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/coach-good/sections.csv"),
+    )
+    .expect("a table");
+    let of_zone = |zone: &str| {
+        let zones = table.lines().filter_map(|line| line.split(',').nth(1));
+        zones.filter(|of| *of == zone).count() as u64
+    };
+    let selections: u64 =
+        ["1", "2", "3", "4"].map(of_zone).iter().map(|n| n * (n - 1) * (n - 2) / 6).product();
+    let found = json(out.path());
+    let offsets = found["offsets"].as_array().expect("offsets");
+    assert!(offsets.len() > 5 && selections > 1, "{}", offsets.len());
+    for at in offsets {
+        assert_eq!(at["combinations"].as_u64(), Some(selections), "{at}");
+        assert_eq!(at["lost"], Value::Array(Vec::new()));
+        assert_eq!(at["verdict_all_sections"], "validated");
+    }
+    assert!(said.contains("unchanged"), "{said}");
+}
+
 #[test]
 fn parameters_say_which_choice_decides() {
     let out = tempfile::tempdir().expect("a folder");

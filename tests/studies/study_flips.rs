@@ -3,7 +3,7 @@
 
 use fishplate::catalog::Statistic;
 use fishplate::metrics::random::SplitMix64;
-use fishplate::result::{Scope, Verdict};
+use fishplate::result::{Direction, Scope, Verdict};
 use fishplate::run::pool::{Pool, Pooled, PooledLimit, PooledQuantity, Rule, Section, Zone};
 use fishplate::study::case::Case;
 use fishplate::study::flips::{Marked, flips};
@@ -23,7 +23,7 @@ fn case(seed: u64, rule: Rule, unused: &[usize]) -> Case {
     };
     let limit = |name: &str, bound: f64| PooledLimit {
         estimate: Pooled::Statistic(Statistic::named(name).expect("a statistic"), 1),
-        at_least: false,
+        direction: Direction::Magnitude,
         title: name.into(),
         scope: Scope::default(),
         positions: Vec::new(),

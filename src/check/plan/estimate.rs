@@ -2,6 +2,7 @@
 
 use super::{Expr, Kind};
 use crate::catalog::Statistic;
+use crate::result::Direction;
 use crate::source::Span;
 use crate::units::Unit;
 
@@ -9,7 +10,7 @@ use crate::units::Unit;
 #[derive(Clone, Debug)]
 pub struct Limit {
     pub estimate: Estimate,
-    pub at_least: bool,
+    pub direction: Direction,
     pub bound: OfGroup,
     /// Each factor with the condition under which it applies.
     pub factors: Vec<(Expr, Expr)>,

@@ -84,6 +84,8 @@ pub struct Quantity {
     pub positions: Vec<Position>,
     pub chain: Vec<Step>,
     pub evaluation: Arc<Evaluation>,
+    /// The best value, SI, where it is known.
+    pub best: Option<f64>,
     pub only: Option<Expr>,
     pub limits: Vec<Arc<Limit>>,
     pub reports: Vec<Arc<Report>>,

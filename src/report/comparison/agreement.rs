@@ -9,7 +9,7 @@ pub fn chapter(found: &Comparison) -> Option<Chapter> {
         return None;
     }
     let mut blocks = vec![Block::text(
-        "The score of a section is the largest ratio of its values and their limits. The limit of a pooled estimate stands for the values of the section too. Up to 1, the section meets the requirement. Spearman's rank correlation compares the order of the scores; the sections of all campaigns are taken together. The last column counts the campaigns with the same verdict.",
+        "The score of a section is the largest ratio of its values and their limits; a value without a ratio, which does not reach its limit, is worse than any. The limit of a pooled estimate stands for the values of the section too. Up to 1, the section meets the requirement. Spearman's rank correlation compares the order of the scores; the sections of all campaigns are taken together. The last column counts the campaigns with the same verdict.",
     )];
     for (of, caption) in [
         ("protocols", "Agreement of protocols over the sections"),

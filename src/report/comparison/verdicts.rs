@@ -170,8 +170,10 @@ pub fn ratios(found: &Comparison) -> Chapter {
                 rows.len() - 1
             });
             let largest = &mut rows[at].1[column];
-            if one.ratio > *largest {
-                *largest = one.ratio;
+            // A value that has no ratio does not reach its limit.
+            let ratio = one.ratio.or((one.holds == Some(false)).then_some(f64::INFINITY));
+            if ratio > *largest {
+                *largest = ratio;
             }
         }
         let mut columns =
@@ -179,7 +181,10 @@ pub fn ratios(found: &Comparison) -> Chapter {
         columns.extend(names.iter().map(|name| Column::number(*name).wide(1.0).breaks(NAME)));
         let row = |([campaign, symbol, estimate], ratios): ([&str; 3], Vec<Option<f64>>)| {
             let mut row = cells![campaign, Cell::symbol(symbol, ""), Cell::sentence(estimate)];
-            row.extend(ratios.into_iter().map(three));
+            row.extend(ratios.into_iter().map(|ratio| match ratio {
+                Some(ratio) if ratio.is_infinite() => "not met".into(),
+                ratio => three(ratio),
+            }));
             row
         };
         let caption = "Largest ratio of value and limit over the groups of each requirement";

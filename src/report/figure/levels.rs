@@ -2,7 +2,7 @@
 
 use super::kit::*;
 use crate::report::estimates;
-use crate::result::{QuantityResult, Scope, StatisticName, StatisticResult};
+use crate::result::{Direction, QuantityResult, Scope, StatisticName, StatisticResult};
 
 /// Most limits that are told apart by their dashes, each with an entry of the legend.
 const NAMED: usize = LIMITS.len();
@@ -54,6 +54,7 @@ impl Levels {
                 .into_iter()
                 .filter(|one| one.unit == quantity.unit && one.divided_at.is_none())
             {
+                let two_sided = two_sided && statistic.direction == Direction::Magnitude;
                 let shown = Shown { two_sided, same };
                 match statistic.name {
                     StatisticName::Mean => levels.mean(statistic, shown),
@@ -72,12 +73,15 @@ impl Levels {
     fn of_assessed(quantity: &QuantityResult) -> Self {
         let mut levels = Self::default();
         let two_sided = quantity.values.iter().any(|pair| pair.difference < 0.0);
+        let direction =
+            quantity.statistics.first().map_or(Direction::Magnitude, |one| one.direction);
         for statistic in quantity
             .statistics
             .iter()
             .filter(|statistic| statistic.unit == quantity.unit && statistic.divided_at.is_none())
         {
             for scope in scopes(statistic) {
+                let two_sided = two_sided && statistic.direction == Direction::Magnitude;
                 for value in statistic.limit.iter().flat_map(|limit| both(0.0, *limit, two_sided)) {
                     levels.draw(Level { value, pen: LIMIT, scope: scope.clone() });
                 }
@@ -92,13 +96,13 @@ impl Levels {
                 all.iter().map(|limit| number::fixed(*limit, decimals)).collect();
             match texts.as_slice() {
                 [first, .., last] if texts.len() > NAMED => {
-                    let text = format!("limits {}{first} to {last}", sign(two_sided));
+                    let text = format!("limits {}{first} to {last}", sign(two_sided, direction));
                     levels.explain(Entry::line(LIMIT, text));
                 }
                 // Each limit has a dash of its own, or the lines could not be told apart.
                 several => {
                     for (text, dash) in several.iter().zip(LIMITS) {
-                        let text = format!("limit {}{text}", sign(two_sided));
+                        let text = format!("limit {}{text}", sign(two_sided, direction));
                         levels.explain(Entry::line(Pen { dash, ..LIMIT }, text));
                     }
                     for line in &mut levels.lines {
@@ -240,8 +244,8 @@ fn both(center: f64, limit: f64, two_sided: bool) -> Vec<f64> {
     if two_sided { vec![center - limit, center + limit] } else { vec![center + limit] }
 }
 
-fn sign(two_sided: bool) -> &'static str {
-    if two_sided { "±" } else { "" }
+fn sign(two_sided: bool, direction: Direction) -> &'static str {
+    if two_sided && direction == Direction::Magnitude { "±" } else { direction.sign() }
 }
 
 /// The value as in the tables, with the decimals of the limit.
@@ -265,10 +269,9 @@ fn says(statistic: &StatisticResult, value: &str) -> String {
 /// The limit of a statistic; without its number if it differs between groups.
 fn says_of_limit(statistic: &StatisticResult, Shown { two_sided, same }: Shown) -> String {
     let one = statistic.scope.is_all() || same && !statistic.scope.keys.is_empty();
-    let limit = statistic
-        .limit
-        .filter(|_| one)
-        .map(|limit| format!("{}{}", sign(two_sided), shown(statistic, limit)));
+    let limit = statistic.limit.filter(|_| one).map(|limit| {
+        format!("{}{}", sign(two_sided, statistic.direction), shown(statistic, limit))
+    });
     format!(
         "limit of {} {}",
         statistic.title,
@@ -307,11 +310,13 @@ mod tests {
             interval: None,
             marginal: false,
             limit: Some(limit),
+            direction: Direction::Magnitude,
             normalised: None,
             sample: Sample::default(),
             regression: None,
             divided_at: None,
             outside: Vec::new(),
+            beyond: None,
             holds: Some(true),
             factors: Vec::new(),
             limit_text: "1 kN".into(),

@@ -76,7 +76,7 @@ fn line_count(quantity: &QuantityResult) -> usize {
 
 /// The normalised value with the sign of the statistic.
 fn signed(statistic: &StatisticResult) -> Option<f64> {
-    let size = statistic.normalised.filter(|value| value.is_finite())?;
+    let size = statistic.normalised.filter(|value| value.is_finite())?.abs();
     Some(if statistic.value.is_some_and(|value| value < 0.0) { -size } else { size })
 }
 

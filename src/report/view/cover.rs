@@ -1,5 +1,7 @@
 //! The cover: verdict, reasons, key facts.
 
+use std::collections::BTreeSet;
+
 use super::{View, campaign, identity, verdicts, wording};
 use crate::report::document::*;
 use crate::report::number;
@@ -167,12 +169,20 @@ fn key_facts(view: &View<'_>) -> Vec<Fact> {
     }
     facts.push(Fact::new("Sections", format!("{used} of {} used", found.sections.len())));
     let compared = |name: &str| Fact::new(name, rows(false));
+    let pairs = || {
+        let compared = found.quantities.iter().filter(|quantity| quantity.from.is_none());
+        let counts = compared.map(|quantity| quantity.values.len() as u64);
+        let counts: BTreeSet<u64> = counts.filter(|count| *count > 0).collect();
+        let ends = [counts.first(), counts.last()].map(|end| number::count(*end.unwrap_or(&0)));
+        let pairs = if counts.len() > 1 { ends.join(" to ") } else { ends[0].clone() };
+        Fact::new("Pairs per quantity", pairs)
+    };
     let assessed = Fact::new("Assessed values", rows(true));
     match found.kind() {
-        Kind::Validation => facts.push(compared("Compared pairs")),
+        Kind::Validation => facts.push(pairs()),
         Kind::Comparison => facts.push(compared("Compared values")),
         Kind::Assessment => facts.push(assessed),
-        Kind::Mixed => facts.extend([compared("Compared pairs"), assessed]),
+        Kind::Mixed => facts.extend([pairs(), assessed]),
     }
     // Of wanted operation, which the verdict does not speak of.
     let wanted = || found.application.iter().flat_map(|domain| &domain.points);

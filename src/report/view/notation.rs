@@ -114,8 +114,9 @@ const WORDS: [(&str, &str); 4] = [
     ),
     (
         "|Value| / limit",
-        "Magnitude of the statistic divided by its limit, or the limit divided by it where the limit is a least value; the criterion is met \
-         up to 1. Ratios above 1000 are not printed.",
+        "Magnitude of the statistic divided by its limit; with ≤ before the limit, the statistic with its sign. With ≥ before the limit, the \
+         limit divided by the statistic, and no ratio for a statistic that is not above zero. The criterion is met up to 1. Ratios above \
+         1000 are not printed.",
     ),
     (
         "p0.15, p99.85",

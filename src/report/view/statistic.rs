@@ -14,9 +14,14 @@ pub fn pairs_and_n(pairs: usize, n: usize) -> Cell {
     format!("{} / {}", number::count(pairs as u64), number::count(n as u64)).into()
 }
 
-/// The limit, with the decimals of the value.
+/// The limit, with the decimals of the value; `≥` before a least value.
 pub fn limit(statistic: Option<&StatisticResult>) -> Cell {
-    statistic.map_or(Cell::MISSING, |one| Cell::number(one.limit, Format::Fixed(decimals(one))))
+    let Some(one) = statistic else { return Cell::MISSING };
+    let cell = Cell::number(one.limit, Format::Fixed(decimals(one)));
+    match one.direction.sign() {
+        "" => cell,
+        sign => Cell::text(format!("{sign}{}", cell.printed().letters())),
+    }
 }
 
 /// Decimals of a statistic: those of its unit, or more if the limit (or else the value) needs them

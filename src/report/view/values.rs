@@ -8,7 +8,7 @@ use super::{caption, in_unit, name};
 use crate::report::document::*;
 use crate::report::number;
 use crate::report::sides::Sides;
-use crate::result::{PairValue, QuantityResult, RecordName, StatisticName, StatisticResult};
+use crate::result::{Direction, PairValue, QuantityResult, RecordName};
 
 /// Number of worst pairs listed.
 const WORST: usize = 5;
@@ -32,23 +32,12 @@ fn format(quantity: &QuantityResult) -> Format {
     Format::Fixed(number::decimals(&quantity.unit, all))
 }
 
-/// The pairs with the largest |difference|; equal ones in the order of the campaign.
+/// The pairs that use the largest shares of their limits; without limits, the largest ones.
 pub fn worst(quantity: &QuantityResult) -> Option<Table> {
-    // The limits of an assessed quantity differ from zone to zone.
-    let stated: &[StatisticResult] =
-        if quantity.from.is_some() { &[] } else { &quantity.statistics };
-    let yardstick = stated
-        .iter()
-        .find(|statistic| statistic.name == StatisticName::StandardDeviation)
-        .or_else(|| stated.first())
-        .filter(|statistic| statistic.unit == quantity.unit && statistic.divided_at.is_none())
-        .and_then(|statistic| {
-            statistic.limit.filter(|limit| *limit > 0.0).map(|limit| (statistic, limit))
-        });
-    let mut pairs: Vec<&PairValue> = quantity.values.iter().collect();
-    pairs.sort_by(|a, b| b.difference.abs().total_cmp(&a.difference.abs()));
+    let own = quantity.values.iter().any(|pair| pair.limit.is_some());
+    let yardstick = quantity.yardstick().filter(|_| !own);
     let format = format(quantity);
-    let row = |pair: &&PairValue| {
+    let row = |(pair, ratio): &(&PairValue, Option<f64>)| {
         let mut cells = vec![
             Cell::from(name(&pair.section)),
             pair.record.as_ref().map(shortened).into(),
@@ -59,8 +48,9 @@ pub fn worst(quantity: &QuantityResult) -> Option<Table> {
             cells.extend([pair.simulated, pair.measured].map(|value| Cell::number(value, format)));
         }
         cells.push(Cell::number(pair.difference, format).strong());
-        let ratio = yardstick.map(|(_, limit)| pair.difference.abs() / limit);
-        cells.extend(ratio.map(|ratio| Cell::number(ratio, Format::Fixed(2))));
+        cells.extend(own.then(|| Cell::number(pair.limit, format)));
+        let ratio = Cell::number(*ratio, Format::Fixed(2));
+        cells.extend((own || yardstick.is_some()).then_some(ratio));
         cells.push((pair.samples as u64).into());
         Row::from(cells).in_zone(pair.zone.as_deref().map(name).as_deref())
     };
@@ -74,14 +64,20 @@ pub fn worst(quantity: &QuantityResult) -> Option<Table> {
         columns.extend(Sides::of(quantity).heads().map(Column::number));
     }
     columns.push(Column::number(if quantity.has_sides { "Difference" } else { "Value" }));
-    columns.extend(yardstick.map(|_| Column::number("Magnitude / limit")));
+    columns.extend(own.then(|| Column::number("Limit")));
+    columns.extend((own || yardstick.is_some()).then(|| Column::number("|Value| / limit")));
     columns.push(Column::number("Samples"));
     let what = if quantity.has_sides { "differences" } else { "values" };
-    let against =
-        yardstick.map(|(one, _)| format!(", and divided by the limit of the {}", one.title));
-    let caption = self::caption(&format!("Largest {what} of "), quantity)
-        .and(in_unit(quantity))
-        .and(against.unwrap_or_default());
+    let against = match yardstick {
+        _ if own => ", and divided by its own limit".into(),
+        Some((one, _)) => format!(", and divided by the limit of the {}", one.title),
+        None => String::new(),
+    };
+    let lower = yardstick.is_some_and(|(one, _)| one.direction == Direction::AtLeast);
+    let which = if own || lower { "Decisive" } else { "Largest" };
+    let caption =
+        self::caption(&format!("{which} {what} of "), quantity).and(in_unit(quantity)).and(against);
+    let pairs = quantity.worst_first();
     let rows = pairs.iter().take(WORST).map(row);
     (!pairs.is_empty()).then(|| Table::new(caption, columns, rows).size(8.0))
 }

@@ -17,7 +17,7 @@ use crate::run::describe::{domain, not_asked, told};
 use crate::run::estimate::extrapolation;
 use crate::run::reduce::{Numbered, Prepared, Progress, Shard};
 use crate::run::sections::{Basis, requirements, units};
-use crate::run::values::Shifts;
+use crate::run::values::{SectionValues, Shifts};
 use crate::run::verdict::{Evaluated, Judged, all_values};
 
 /// The results of a run. The report adds the descriptions of protocol and campaign.
@@ -112,7 +112,7 @@ pub fn evaluated(
     basis: &Basis,
     sections: Vec<Numbered>,
 ) -> Result<Evaluated, Problems> {
-    basis.evaluated(plan, all_values(basis, sections), true, None)
+    basis.evaluated(plan, all_values(basis, sections))
 }
 
 /// The values of some sections, and what they are judged with.
@@ -142,7 +142,7 @@ pub fn reduce<'a>(
 }
 
 /// Evaluates every section with the measurement at each of several shifts (SI of the axis). Filters
-/// run once.
+/// run once. Sections that cannot be used without a shift are not used at any.
 ///
 /// # Errors
 /// As [`run`].
@@ -168,17 +168,16 @@ pub fn evaluate<'a>(
     }
     let prepared = Prepared::new(plan, graph, campaigns)?;
     let mut values = prepared.shifted(Shard::WHOLE, shifts, progress);
-    let mut at = |at: usize, reduction: Option<&Reduction>| {
-        let values = values.iter_mut().map(|(_, all)| Some(std::mem::take(&mut all[at]))).collect();
-        prepared.basis.evaluated(plan, values, shifts.offsets[at] == 0.0, reduction)
-    };
-    // The same sections at every shift: a reduction looks at the records as they are.
+    let mut at =
+        |at: usize| values.iter_mut().map(|(_, all)| std::mem::take(&mut all[at])).collect();
+    // Rules of plausibility ask about the records as they are: a shift that the study makes is no
+    // fault of the data, and every shift is judged with the same sections.
     let unmoved = shifts.offsets.iter().position(|offset| *offset == 0.0).unwrap_or(0);
-    let first = at(unmoved, None)?;
-    let mut all: Vec<Evaluated> = Vec::new();
-    for shift in (0..shifts.offsets.len()).filter(|shift| *shift != unmoved) {
-        all.push(at(shift, first.reduction.as_ref())?);
-    }
+    let as_recorded: Vec<SectionValues> = at(unmoved);
+    let values = as_recorded.into_iter().map(Some).collect();
+    let first = prepared.basis.evaluated(plan, values)?;
+    let others = (0..shifts.offsets.len()).filter(|shift| *shift != unmoved);
+    let mut all: Vec<Evaluated> = others.map(|shift| first.in_trial(plan, at(shift))).collect();
     all.insert(unmoved, first);
     Ok(all)
 }

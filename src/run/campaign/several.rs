@@ -101,7 +101,7 @@ pub fn several(
         .zip(by_round.next().unwrap_or_default())
         .map(|(prepared, values)| {
             let Prepared { basis, plan, .. } = prepared?;
-            basis.evaluated(plan, values.into_iter().map(Some).collect(), true, None)
+            basis.evaluated(plan, values.into_iter().map(Some).collect())
         })
         .collect();
     let in_trial = |(at, values): (usize, Vec<SectionValues>)| {

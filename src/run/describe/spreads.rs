@@ -112,6 +112,8 @@ mod tests {
             measured: Some(0.0),
             difference,
             samples: 1,
+            limit: None,
+            ratio: None,
         }
     }
 

@@ -10,7 +10,7 @@ use crate::check::plan::{self, Axis, Evaluation, Plan, Side};
 use crate::data::WhichRecord;
 use crate::graph::{Graph, NodeId};
 use crate::metrics::statistics::ends;
-use crate::result::{Curve, QuantityResult, Reason, RecordName, Remark, Trace};
+use crate::result::{Curve, Direction, QuantityResult, Reason, RecordName, Remark, Trace};
 use crate::run::data_rules::take_over;
 use crate::run::record::{NodeValue, Samples, SectionWork, Work};
 use crate::run::sections::{Extent, Unit as Section};
@@ -58,8 +58,7 @@ impl Kept {
     }
 }
 
-/// The pair with the largest difference of each quantity, relative to its limits. The worst is
-/// first, each signal of a section once. If a plot cannot be made, a note states the reason.
+/// The pair of each quantity that uses the largest share of its limit. The worst is first, each signal of a section once. If a plot cannot be made, a note states the reason.
 pub fn traces(
     (plan, graph): (&Plan, &Graph),
     units: &[Section],
@@ -75,9 +74,7 @@ pub fn traces(
             .filter_map(|statistic| statistic.limit)
             .fold(f64::NAN, f64::max);
         let scale = if limit > 0.0 { limit } else { 1.0 };
-        let worst =
-            quantity.values.iter().max_by(|a, b| a.difference.abs().total_cmp(&b.difference.abs()));
-        let Some(worst) = worst else { continue };
+        let Some((worst, share)) = quantity.worst_first().into_iter().next() else { continue };
         let unit = units.iter().position(|unit| unit.name == worst.section);
         let signal = plan.quantities[index]
             .positions
@@ -85,7 +82,7 @@ pub fn traces(
             .position(|position| position.name == worst.signal);
         if let (Some(unit), Some(signal)) = (unit, signal) {
             let pick = Pick { quantity: index, unit, signal, record: worst.record.as_ref() };
-            picks.push((worst.difference.abs() / scale, pick));
+            picks.push((share.unwrap_or_else(|| worst.difference.abs() / scale), pick));
         }
     }
     picks.sort_by(|(a, first), (b, second)| {
@@ -133,9 +130,12 @@ pub fn kept(work: &Work<'_>, sections: &[(usize, SectionValues)]) -> Vec<Kept> {
         for (_, (number, values)) in
             units.iter().zip(sections).filter(|(unit, _)| unit.fault.is_none())
         {
-            let size = |row: &Row| quantity.unit.from_si(row.value).abs();
+            // The limits of single values, which may differ between sections, are not known yet.
+            let limit = quantity.limits.first();
+            let least = limit.is_some_and(|limit| limit.direction == Direction::AtLeast);
+            let size = |row: &Row| if least { -row.value } else { row.value.abs() };
             let rows = values.rows.get(index).map_or(&[][..], Vec::as_slice);
-            let Some(row) = rows.iter().max_by(|a, b| size(a).total_cmp(&size(b))) else {
+            let Some(row) = rows.iter().rev().max_by(|a, b| size(a).total_cmp(&size(b))) else {
                 continue;
             };
             worst.push((
@@ -148,8 +148,7 @@ pub fn kept(work: &Work<'_>, sections: &[(usize, SectionValues)]) -> Vec<Kept> {
                 },
             ));
         }
-        // Of equal ones the last, as in the whole campaign.
-        worst.reverse();
+        // Of equal ones the first, as in the whole campaign.
         worst.sort_by(|(a, _), (b, _)| b.total_cmp(a));
         worst.truncate(KEPT);
         worst.into_iter().for_each(|(_, pick)| picks.entry(pick.unit).or_default().push(pick));
@@ -250,6 +249,14 @@ impl<'a> Records<'a> {
         let (unit, quantity) = (&work.units[pick.unit], &work.plan.quantities[quantity]);
         let campaign = work.campaigns.get(unit.campaign);
         let (node, over, axis) = pick.signals(work);
+        let least = quantity.limits.iter().any(|one| one.direction == Direction::AtLeast);
+        let further = match quantity.evaluation.as_ref() {
+            Evaluation::Values { values, .. } => {
+                let inputs = values.iter().flat_map(|value| value.inputs.iter().flatten());
+                inputs.into_iter().any(|input| input.signal.is_some())
+            }
+            _ => false,
+        };
         let name = |which| campaign.record_name(which).map(|name| name.as_ref());
         let curve_of = |unit: &Section, which: WhichRecord| {
             let (found, extent) = self.signals(unit, which, pick)?;
@@ -315,10 +322,12 @@ impl<'a> Records<'a> {
             zone: unit.zone.clone(),
             signal: quantity.positions[signal].name.clone(),
             why: format!(
-                "largest {} of {}{}",
+                "{} {} of {}{}{}",
+                if least { "decisive" } else { "largest" },
                 if quantity.evaluation.assesses() { "value" } else { "difference" },
                 quantity.id,
-                record.map_or_else(String::new, |name| format!(" ({name})"))
+                record.map_or_else(String::new, |name| format!(" ({name})")),
+                if further { ", which is formed from other signals as well" } else { "" }
             ),
             unit: quantity.signal_unit.text.clone(),
             axis: axis.column.clone(),

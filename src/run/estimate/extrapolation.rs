@@ -1,4 +1,5 @@
-//! Regressions that are read outside the data that they were fitted to.
+//! Regressions that are read outside the data that they were fitted to, and estimates from them far
+//! beyond the values.
 
 use super::groups::Group;
 use super::table::Member;
@@ -12,6 +13,14 @@ const EXTRAPOLATED: &str = "extrapolated";
 /// Beyond the data by less than this share of their range is rounding: a target such as `mean of
 /// speed` is computed from them.
 const ROUNDING: f64 = 1e-9;
+
+/// Code of the finding about estimates far beyond the values.
+const BEYOND: &str = "beyond-measured";
+
+/// Beyond the values by more than this multiple of their range an estimate is far. A bound for a
+/// further value lies above all of them, with 25 values by less than half of their range; with three,
+/// of which one is free, 99 % are 64 standard errors, and no value says anything so far away.
+const FAR: f64 = 1.0;
 
 impl Group<'_> {
     /// The regressors of an estimate that are read outside the data of this group.
@@ -38,6 +47,15 @@ impl Group<'_> {
             | Taking::Data { .. } => Vec::new(),
         };
         of.taken.iter().flat_map(one).collect()
+    }
+
+    /// The least and the largest value of this group, if an estimate with regressions lies far beyond
+    /// them.
+    pub fn beyond(&self, of: &OfGroup, estimate: f64) -> Option<(f64, f64)> {
+        let (low, high) = ends(self.values().into_iter());
+        let beyond = (low - estimate).max(estimate - high) > FAR * (high - low);
+        let fitted = of.taken.iter().any(|taking| matches!(taking, Taking::Fit(_)));
+        (fitted && beyond).then_some((low, high))
     }
 
     fn outside_of(&self, fit: &Fit) -> Vec<Outside> {
@@ -89,7 +107,31 @@ pub fn findings(quantities: &[QuantityResult]) -> Vec<Finding> {
             }
         }
     }
-    all.iter().map(|(outside, reads)| finding(outside, reads)).collect()
+    let beyond = quantities.iter().filter_map(beyond);
+    all.iter().map(|(outside, reads)| finding(outside, reads)).chain(beyond).collect()
+}
+
+/// The estimates of a quantity that lie far beyond their values.
+fn beyond(quantity: &QuantityResult) -> Option<Finding> {
+    let statistics = quantity.statistics.iter();
+    let all: Vec<_> = statistics.filter_map(|one| Some((one, one.value?, one.beyond?))).collect();
+    let far = |value: f64, (low, high): (f64, f64)| {
+        (low - value).max(value - high) / (high - low).max(f64::MIN_POSITIVE)
+    };
+    let farthest = all.iter().max_by(|a, b| far(a.1, a.2).total_cmp(&far(b.1, b.2)));
+    let (one, value, (low, high)) = *farthest?;
+    let data = FindingData::BeyondMeasured {
+        quantity: quantity.id.clone(),
+        estimates: all.len(),
+        estimate: one.title.clone(),
+        group: one.scope.told(),
+        value,
+        count: one.count,
+        low,
+        high,
+        unit: one.unit.clone(),
+    };
+    Some(Finding::note(BEYOND, Occurrence::from(data)))
 }
 
 fn finding(outside: &Outside, reads: &[Read<'_>]) -> Finding {

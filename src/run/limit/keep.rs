@@ -14,19 +14,15 @@ use crate::result::study::Reduction;
 use crate::run::sections::{Facts, Unit};
 use crate::run::values::SectionValues;
 
-/// Leaves out sections, where the protocol says so. With `before`, those that another evaluation of
-/// the campaign left out.
+/// Leaves out sections, where the protocol says so.
 pub fn keep(
     plan: &Plan,
     facts: &Facts,
     units: &mut [Unit],
     values: &[SectionValues],
-    before: Option<&Reduction>,
 ) -> Option<Reduction> {
     let keep = plan.sections.keep.as_ref()?;
-    let reduction = before
-        .cloned()
-        .unwrap_or_else(|| reduce_units(keep, &pool(plan, facts, units, values), units));
+    let reduction = reduce_units(keep, &pool(plan, facts, units, values), units);
     let left_out: HashSet<&String> = reduction.left_out.iter().collect();
     for unit in units.iter_mut().filter(|unit| left_out.contains(&unit.name)) {
         unit.refuse(Reason::LeftOutByReduction { kept: keep.words.clone() }, false);

@@ -2,12 +2,14 @@
 //!
 //! | file | content |
 //! |---|---|
+//! | `against` | a number against a limit |
 //! | `factors` | factors of limits that apply because of vehicle data |
 //! | `limits` | estimates compared with limits, group by group |
 //! | `together` | simulations that meet limits together, and not alone |
 //! | `pool` | all values and limits, for selections of sections |
 //! | `keep` | the selection that keeps the scatter, as a step of the protocol |
 
+mod against;
 mod factors;
 pub mod keep;
 mod limits;

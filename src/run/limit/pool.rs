@@ -11,7 +11,7 @@ use crate::check::plan::{
     self, Decision, EstimateKind, Kind, MinimumOfGroups, OfGroup, Plan, Quantity, Taking,
 };
 use crate::metrics::moments::{Moment, Moments};
-use crate::result::{Reason, Scope};
+use crate::result::{Direction, Reason, Scope};
 use crate::run::estimate::{Group, Member, RowGroup, Rows, used};
 use crate::run::sections::{Facts, Known, Unit, Vehicle};
 use crate::run::values::{Row, SectionValues};
@@ -219,7 +219,7 @@ impl std::fmt::Debug for Estimator {
 #[derive(Clone, Debug)]
 pub struct PooledLimit {
     pub estimate: Pooled,
-    pub at_least: bool,
+    pub direction: Direction,
     /// As printed: `standard deviation (n-1)`.
     pub title: String,
     pub scope: Scope,
@@ -394,7 +394,7 @@ impl Making<'_> {
         };
         Some(PooledLimit {
             estimate,
-            at_least: limit.at_least,
+            direction: limit.direction,
             title: limit.estimate.title.clone(),
             scope: part.scope(),
             inside,

@@ -46,8 +46,7 @@ pub struct Evaluated {
 }
 
 impl Basis {
-    /// The values of all sections at one shift, `None` where they are missing. If `needed`, at
-    /// least one section must be usable. `reduction`: that of the records as they are.
+    /// The values of all sections, `None` where they are missing.
     ///
     /// # Errors
     /// No section can be used; a section is faulty or does not meet a check, and the protocol
@@ -56,8 +55,6 @@ impl Basis {
         &self,
         plan: &Plan,
         values: Vec<Option<SectionValues>>,
-        needed: bool,
-        reduction: Option<&Reduction>,
     ) -> Result<Evaluated, Problems> {
         let (mut units, mut notes) = (self.units.clone(), self.notes.clone());
         let mut missing = Vec::new();
@@ -72,7 +69,7 @@ impl Basis {
         let copies = copies::find(plan, &units, &values);
         take_over(plan, &self.facts, &mut units, &values, &copies, &mut notes)?;
         stop_on_fault(plan, &units, &values)?;
-        let reduction = keep::keep(plan, &self.facts, &mut units, &values, reduction);
+        let reduction = keep::keep(plan, &self.facts, &mut units, &values);
         let values = without_unused_originals(plan, &units, values);
         let findings: Vec<Finding> = values
             .iter()
@@ -82,7 +79,7 @@ impl Basis {
         // Sections excluded by a plausibility rule state the reason in the findings of a report.
         let refused_by_finding =
             findings.iter().any(|finding| finding.consequence == Consequence::NotUsed);
-        let needed = needed && !refused_by_finding && missing.is_none();
+        let needed = !refused_by_finding && missing.is_none();
         if needed && units.iter().all(|unit| unit.fault.is_some()) {
             return Err(nothing_usable(&units, values));
         }
@@ -136,7 +133,7 @@ impl Evaluated {
     }
 
     /// The same with other values of the sections. Those are used that are used here, as far as
-    /// they have values. Nothing is found of the data, which are not asked about again.
+    /// they have values. What is found of the data stands: they are not asked about again.
     #[must_use]
     pub fn in_trial(&self, plan: &Plan, values: Vec<SectionValues>) -> Self {
         let mut units = self.units.clone();
@@ -149,8 +146,8 @@ impl Evaluated {
             facts: self.facts.clone(),
             values: without_unused_originals(plan, &units, values),
             units,
-            findings: Vec::new(),
-            application: Vec::new(),
+            findings: self.findings.clone(),
+            application: self.application.clone(),
             notes: Vec::new(),
             reduction: self.reduction.clone(),
             missing: None,
@@ -180,9 +177,13 @@ pub struct SectionRatio {
     /// itself stands here.
     pub limit: Option<usize>,
     pub section: String,
-    /// The largest of |value| / limit of the section's values.
-    pub ratio: f64,
+    /// Of the section's worst value.
+    pub score: Score,
 }
+
+/// The share of the limit, infinite where there is none, and then how far the value is below the
+/// limit, as a share of it. Of a metric without a limit, the distance from its best value.
+pub type Score = (f64, f64);
 
 impl Evaluated {
     /// Names of the sections, and why one is not used.
@@ -225,9 +226,10 @@ impl Evaluated {
         for (index, quantity) in plan.quantities.iter().enumerate() {
             let members = &all[index].members;
             if quantity.limits.is_empty() {
+                let best = quantity.unit.from_si(quantity.best.unwrap_or_default());
                 for member in members {
-                    let value = quantity.unit.from_si(member.row.value).abs();
-                    largest(&mut found, index, None, &member.unit.name, value);
+                    let off = (quantity.unit.from_si(member.row.value) - best).abs();
+                    worst(&mut found, index, None, &member.unit.name, (off, 0.0));
                 }
             }
             let rows = Group { plan, facts, quantity: Some(quantity), members, table: &table };
@@ -252,10 +254,13 @@ impl Evaluated {
                             true => judging.own_bound(limit, member.unit, &[*member]).ok(),
                             false => pooled,
                         };
-                        let ratio =
-                            bound.and_then(|bound| ratio(member.row.value, bound, limit.at_least));
-                        if let Some(ratio) = ratio {
-                            largest(&mut found, index, Some(at), &member.unit.name, ratio);
+                        let value = member.row.value;
+                        let score = |bound: f64| match limit.direction.share(value, bound) {
+                            Some(share) => (share, 0.0),
+                            None => (f64::INFINITY, 1.0 - value / bound),
+                        };
+                        if let Some(score) = bound.map(score) {
+                            worst(&mut found, index, Some(at), &member.unit.name, score);
                         }
                     }
                 }
@@ -265,17 +270,12 @@ impl Evaluated {
     }
 }
 
-fn ratio(value: f64, bound: f64, at_least: bool) -> Option<f64> {
-    let ratio = if at_least { bound / value } else { value.abs() / bound };
-    (ratio.is_finite() && ratio >= 0.0).then_some(ratio)
-}
-
-fn largest(
+fn worst(
     found: &mut Vec<SectionRatio>,
     quantity: usize,
     limit: Option<usize>,
     section: &str,
-    ratio: f64,
+    score: Score,
 ) {
     // Rows of a quantity stand section by section, so its entry is among the last ones.
     let same = |one: &&mut SectionRatio| {
@@ -287,7 +287,8 @@ fn largest(
         .take_while(|one| one.quantity == quantity && one.limit == limit)
         .find(same)
     {
-        Some(one) => one.ratio = one.ratio.max(ratio),
-        None => found.push(SectionRatio { quantity, limit, section: section.to_string(), ratio }),
+        Some(one) if score > one.score => one.score = score,
+        Some(_) => {}
+        None => found.push(SectionRatio { quantity, limit, section: section.to_string(), score }),
     }
 }

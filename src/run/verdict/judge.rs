@@ -1,7 +1,7 @@
 //! From the rows of all sections to results of quantities and verdicts: the nodes of the graph
 //! after the table of values.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 
 use indexmap::IndexMap;
 
@@ -16,7 +16,7 @@ use crate::run::describe::{reports, spreads};
 use crate::run::estimate::{Group, Member, Rows, count_independent, used};
 use crate::run::limit::{Compared, Judging, rule_place};
 use crate::run::sections::{Facts, Unit};
-use crate::run::values::SectionValues;
+use crate::run::values::{Row, SectionValues};
 
 #[derive(Debug)]
 pub struct Judged {
@@ -146,9 +146,20 @@ fn zone_result(zone: &Zone, units: &[Unit]) -> ZoneResult {
 /// The result, and a reason for each limit that is not met.
 fn quantity_result(judging: &Judging<'_>, reason: Option<Reason>) -> (QuantityResult, Vec<Reason>) {
     let (quantity, Group { plan, members, .. }) = (judging.quantity, judging.rows);
-    let compared = judging.compared().into_iter();
-    let (statistics, fails): (Vec<_>, Vec<_>) =
-        compared.map(|Compared { result, fails }| (result, fails)).unzip();
+    let (mut statistics, mut fails) = (Vec::new(), Vec::new());
+    // The limit of each row that has one of its own, and the share; of several the largest share.
+    let mut limits: HashMap<*const Row, (f64, Option<f64>)> = HashMap::new();
+    for Compared { result, fails: reason, own } in judging.compared() {
+        statistics.push(result);
+        fails.extend(reason);
+        for (row, limit, share) in own {
+            let known = limits.entry(std::ptr::from_ref(row)).or_insert((limit, share));
+            let size = |share: Option<f64>| share.unwrap_or(f64::INFINITY);
+            if size(share) > size(known.1) {
+                *known = (limit, share);
+            }
+        }
+    }
     let undefined =
         statistics.iter().find(|statistic| statistic.holds.is_none()).map(|statistic| {
             Reason::OfEstimate {
@@ -161,6 +172,7 @@ fn quantity_result(judging: &Judging<'_>, reason: Option<Reason>) -> (QuantityRe
     let reason = reason.or(undefined).or_else(|| if met { judging.fails_alone() } else { None });
     let holds = reason.is_none().then_some(met);
     let show = |value: f64| quantity.unit.from_si(value);
+    let limit_of = |member: &Member<'_>| limits.get(&std::ptr::from_ref(member.row));
     let value = |member: &Member<'_>| PairValue {
         campaign: member.unit.campaign_name.clone(),
         section: member.unit.name.clone(),
@@ -172,6 +184,8 @@ fn quantity_result(judging: &Judging<'_>, reason: Option<Reason>) -> (QuantityRe
         measured: member.row.measured.map(show),
         difference: show(member.row.value),
         samples: member.row.samples,
+        limit: limit_of(member).map(|(limit, _)| show(*limit)),
+        ratio: limit_of(member).and_then(|(_, share)| *share),
     };
     let values: Vec<PairValue> = members.iter().map(value).collect();
     let result = QuantityResult {
@@ -224,5 +238,5 @@ fn quantity_result(judging: &Judging<'_>, reason: Option<Reason>) -> (QuantityRe
         reason,
         rule: rule_place(&quantity.span),
     };
-    (result.completed(), fails.into_iter().flatten().collect())
+    (result.completed(), fails)
 }

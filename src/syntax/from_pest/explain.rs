@@ -268,6 +268,7 @@ fn in_words(rule: Rule) -> &'static str {
         limit => "a limit",
         statistic => "a statistic such as `mean` or `std`, or an estimate in parentheses",
         at_least => "`at least`",
+        at_most => "`at most`",
         limit_part => "`doubled when`, `times`, `only when` or `for zones`",
         doubled | kw_doubled => "`doubled when`",
         times | kw_times => "`times ... when`",

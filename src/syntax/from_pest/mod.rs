@@ -96,11 +96,13 @@ pub fn limit(text: &Text, problems: &mut Problems) -> Option<Limit> {
     let first = inner.next()?;
     let statistic = first.at(normalised(first.written()));
     let estimate = estimate(first)?;
-    let at_least = inner.next_if(|part| part.rule == Rule::at_least).is_some();
+    let mut next_is = |rule| inner.next_if(|part| part.rule == rule).is_some();
+    let (at_least, at_most) = (next_is(Rule::at_least), next_is(Rule::at_most));
     let mut limit = Limit {
         statistic,
         estimate,
         at_least,
+        at_most,
         bound: cases(inner.next()?)?,
         factors: Vec::new(),
         only_when: None,
@@ -415,7 +417,10 @@ mod tests {
         assert!(found.scope.zones.len() == 2);
         let found = limit(&text("p95 at least 0.8 only when a is b for each zone"), &mut problems)
             .expect("a limit");
-        assert!(found.at_least && found.only_when.is_some() && found.scope.each[0].node == "zone");
+        assert!(found.at_least && !found.at_most);
+        assert!(found.only_when.is_some() && found.scope.each[0].node == "zone");
+        let found = limit(&text("(mean + 3 * std) at most 60 kN"), &mut problems).expect("a limit");
+        assert!(found.at_most && !found.at_least);
     }
 
     #[test]

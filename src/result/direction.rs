@@ -1,0 +1,48 @@
+//! What a limit bounds, and the share of it that a value uses.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// What a limit bounds of a statistic.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Direction {
+    /// Its magnitude.
+    #[default]
+    Magnitude,
+    /// Its value with the sign, from above.
+    AtMost,
+    /// Its value with the sign, from below.
+    AtLeast,
+}
+
+impl Direction {
+    pub fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// As printed before the limit.
+    pub fn sign(self) -> &'static str {
+        match self {
+            Self::Magnitude => "",
+            Self::AtMost => "≤ ",
+            Self::AtLeast => "≥ ",
+        }
+    }
+
+    /// The share of a limit that a value uses, up to 1 where it is met: |value| / limit; value /
+    /// limit of `at most`; limit / value of `at least`, where both are above zero. A least value
+    /// below zero is used by values below zero only: value / limit, otherwise 0. `None`: the value
+    /// does not reach a limit above zero, and no share says how far it is away.
+    pub fn share(self, value: f64, limit: f64) -> Option<f64> {
+        let share = match (self, limit > 0.0) {
+            (Self::Magnitude, true) => value.abs() / limit,
+            (Self::AtMost, true) => value / limit,
+            (Self::AtLeast, true) if value > 0.0 => limit / value,
+            (Self::AtLeast, false) if value >= 0.0 => 0.0,
+            (Self::AtLeast, false) => value / limit,
+            _ => return None,
+        };
+        share.is_finite().then_some(share)
+    }
+}
