@@ -32,7 +32,7 @@ fn pool(counts: &[usize]) -> Pool {
     let named = |name: &str| Statistic::named(name).expect("a statistic");
     let limit = |name: &str, bound: f64| PooledLimit {
         estimate: Pooled::Statistic(named(name), 1),
-        at_least: false,
+        direction: fishplate::result::Direction::Magnitude,
         title: name.into(),
         scope: fishplate::result::Scope::default(),
         positions: Vec::new(),
