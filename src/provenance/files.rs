@@ -15,6 +15,9 @@ use crate::problem::Problems;
 use crate::result::{Certification, THIS};
 use crate::run::Progress;
 
+/// Makes the files of a report, the PDF and the HTML page if they are wanted.
+pub type Make<'a> = &'a dyn Fn(&Certification, [bool; 2]) -> Result<Files, Problems>;
+
 /// Settings for the repeated evaluation.
 #[allow(missing_debug_implementations, reason = "a function has none")]
 #[derive(Clone, Copy)]
@@ -23,8 +26,8 @@ pub struct Again<'a> {
     pub campaigns: &'a [PathBuf],
     /// Number of distance plots of the report.
     pub plots: usize,
-    /// Makes the files of a report, the PDF and the HTML page if they are wanted.
-    pub make: &'a dyn Fn(&Certification, [bool; 2]) -> Result<Files, Problems>,
+    /// Makes the report again.
+    pub make: Make<'a>,
     pub progress: Progress<'a>,
 }
 

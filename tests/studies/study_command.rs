@@ -128,7 +128,7 @@ fn every_offset_has_the_sections_of_the_records() {
     assert!(offsets.len() > 5 && selections > 1, "{}", offsets.len());
     for at in offsets {
         assert_eq!(at["combinations"].as_u64(), Some(selections), "{at}");
-        assert_eq!(at["lost"], Value::Array(Vec::new()));
+        assert!(at["lost"].as_array().is_none_or(Vec::is_empty), "{at}");
         assert_eq!(at["verdict_all_sections"], "validated");
     }
     assert!(said.contains("unchanged"), "{said}");

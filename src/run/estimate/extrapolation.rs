@@ -52,7 +52,7 @@ impl Group<'_> {
     /// The least and the largest value of this group, if an estimate with regressions lies far beyond
     /// them.
     pub fn beyond(&self, of: &OfGroup, estimate: f64) -> Option<(f64, f64)> {
-        let (low, high) = ends(self.values().into_iter());
+        let (low, high) = ends(self.values());
         let beyond = (low - estimate).max(estimate - high) > FAR * (high - low);
         let fitted = of.taken.iter().any(|taking| matches!(taking, Taking::Fit(_)));
         (fitted && beyond).then_some((low, high))
