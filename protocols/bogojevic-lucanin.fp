@@ -1,6 +1,7 @@
 # Matching of the distributions of two signals, section by section: variances by Fisher's test, means by their difference.
 
 protocol bogojevic-lucanin "Matching probability of cumulative distributions, signal by signal and section by section"
+  uses    plausibility-signals
   source  "Bogojevic & Lucanin 2014, as described by Goetz & Polach, Table 2 and section 2"
   author  "Fishplate"
   scope   "Comparison of the distributions of measured and simulated signals in single sections. The original"

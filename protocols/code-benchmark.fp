@@ -3,6 +3,7 @@
 # were not to hand: nothing here is taken from them. Both tolerances are this protocol's own choice.
 
 protocol code-benchmark "Comparison of simulation codes on one case"
+  uses    plausibility-signals
   source  "Kind of comparison: ERRI B176; Iwnicki, Manchester Benchmarks for Rail Vehicle Simulation, Vehicle"
           "System Dynamics 30 (1998), 295-313. The published numbers were not to hand."
   author  "Fishplate"

@@ -1,6 +1,7 @@
 # The flexibility coefficient of a stationary test, in which the vehicle is slowly canted to both sides.
 
 protocol en14067-6-flexibility "Flexibility coefficient of a stationary sway test, EN 14067-6 and EN 15273-2 kind"
+  uses     plausibility-signals
   edition  "Similar to EN 14067-6:2010 and EN 15273-2:2013"
   source   "Goetz & Polach, section 3.3: the flexibility coefficient (suspension coefficient) of the"
            "kinematic gauge"

@@ -1,6 +1,7 @@
 # Model validation for cross wind. The paper names what is compared; limits of the comparison are this protocol's own.
 
 protocol en14067-6-wheel-unloading "Vertical wheel unloading, simulated and compared with the measurement, EN 14067-6 kind"
+  uses     plausibility-signals
   edition  "Similar to EN 14067-6:2010"
   source   "Goetz & Polach, section 3.3: the model is validated by vertical wheelset and wheel forces and by"
            "the flexibility coefficient"

@@ -1,6 +1,7 @@
 # Rules in our own words; the text of the standard is not reproduced. Numbers: Table 1 of the paper named under `source`.
 
 protocol en14363-2016-annex-t "Validation of a simulation model by on-track tests, EN 14363:2016 Annex T"
+  uses     plausibility-signals
   edition  "EN 14363:2016, Annex T (method of the DynoTRAIN project)"
   source   "Goetz & Polach, Verification and validation of simulations in a rail vehicle certification"
            "context, Table 1"
@@ -403,35 +404,6 @@ plausibility track_cant "Cant of the track file against the table"
   otherwise  not used
   cause      "cant or direction of the section, or the track file of another section"
 
-plausibility live "Constant channel"
-  of         Y
-  of         Q
-  of         ay
-  of         az
-  require    held <= 5 %
-  otherwise  not used
-  cause      "a channel without a signal, or an interrupted one"
-  note       "In a working channel, the longest run of equal samples is at most 2 % of a section."
-
-plausibility saturated "Saturated channel"
-  of         Y
-  of         Q
-  of         ay
-  of         az
-  require    at_extreme <= 2 %
-  otherwise  not used
-  cause      "a recorder or sensor at the end of its range"
-  note       "A working channel is at its largest or smallest value in less than 1 % of the samples."
-
-plausibility coarse "Channel with coarse resolution"
-  of       Y
-  of       Q
-  of       ay
-  of       az
-  require  resolution <= 0.15 * std
-  cause    "insufficient resolution of the recorder, or too few decimals"
-  note     "Steps of 15 % of the standard deviation increase it by 0.1 % and distort percentiles."
-
 plausibility noise "Noise of a channel"
   of       Q
   of       ay
@@ -441,36 +413,6 @@ plausibility noise "Noise of a channel"
   note     "Noise of more than 60 % of the standard deviation hides the signal. In 138 sound sections at 200"
            "Hz it is at most 41 % for Q and 20 % for accelerations. Guiding forces on straight track are"
            "small against their noise and are not checked."
-
-plausibility exchanged "Exchanged channels"
-  of         Y
-  of         Q
-  of         ay
-  of         az
-  exchanged  from 0.5, by 0.3
-  cause      "two channels exchanged in one of the records"
-  note       "Forces of neighbouring wheels are alike: in sound sections a channel agrees with another one"
-             "better than with its own by at most 0.04."
-
-plausibility same_sign "Simulation and measurement with the same sign"
-  of         Y
-  of         Q
-  of         ay
-  of         az
-  require    correlation >= -0.3
-  otherwise  not used
-  cause      "an inverted sign in one of the two records"
-  note       "Sections of 100 m contain about 10 independent waves or more: the correlation of unrelated"
-             "signals is seldom below -0.3, that of related ones never."
-
-plausibility same_size "Scatter of simulation and measurement"
-  of         Y
-  of         Q
-  of         ay
-  of         az
-  require    measured(std) near simulated(std) within a factor of 6
-  otherwise  not used
-  cause      "the unit of one of the two records"
 
 plausibility mirrored "Records in the same direction"
   of         az
@@ -485,23 +427,6 @@ plausibility aligned "Records at the same place"
   require  |shift| <= 2 m
   cause    "the distance of one of the two records is shifted or scaled"
   note     "A shift moves the section; up to 2 m are within the accuracy of the synchronisation."
-
-plausibility drift "Drift of the measurement"
-  of       Y
-  of       Q
-  of       ay
-  of       az
-  require  |drift| <= 1.5 * measured(std)
-  cause    "drift of a measuring channel"
-
-plausibility copies "Copies of records"
-  of         Y
-  of         Q
-  of         ay
-  of         az
-  distinct   channels, sections, sides
-  otherwise  not used
-  cause      "a record or channel written twice"
 
 plausibility freight_suspension "Category and suspension"
   require  not (vehicle.category is freight and vehicle.secondary_suspension)

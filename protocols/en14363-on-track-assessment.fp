@@ -2,6 +2,7 @@
 # reproduced. No numeric table of the standard was at hand: every number is a parameter or says that it is from memory.
 
 protocol en14363-on-track-assessment "On-track assessment of running safety, track loading and ride, EN 14363 normal method"
+  uses     plausibility-signals
   edition  "EN 14363:2016, clause 7 (on-track tests, normal measuring method)"
   source   "EN 14363:2016; signals, filters and percentiles as in the public table of the GENSYS course on"
            "UIC 518 (gensys.se/course/UIC518_tests.html)"
@@ -493,44 +494,6 @@ plausibility track_cant "Cant of the track file against the table"
   unless     direction is straight
   otherwise  not used
   cause      "cant or direction of the section, or the track file of another section"
-
-plausibility live "Constant channel"
-  of         Y
-  of         Q
-  of         ay
-  of         az
-  require    held <= 5 %
-  otherwise  not used
-  cause      "a channel without a signal, or an interrupted one"
-  note       "In a working channel, the longest run of equal samples is at most 2 % of a section."
-
-plausibility saturated "Saturated channel"
-  of         Y
-  of         Q
-  of         ay
-  of         az
-  require    at_extreme <= 2 %
-  otherwise  not used
-  cause      "a recorder or sensor at the end of its range"
-  note       "A working channel is at its largest or smallest value in less than 1 % of the samples."
-
-plausibility coarse "Channel with coarse resolution"
-  of       Y
-  of       Q
-  of       ay
-  of       az
-  require  resolution <= 0.15 * std
-  cause    "insufficient resolution of the recorder, or too few decimals"
-  note     "Steps of 15 % of the standard deviation increase it by 0.1 % and distort percentiles."
-
-plausibility copies "Copies of records"
-  of         Y
-  of         Q
-  of         ay
-  of         az
-  distinct   channels, sections, sides
-  otherwise  not used
-  cause      "a record or channel written twice"
 
 plausibility single_axles "Running gear and wheelsets"
   of         SigmaY at wheelset 3

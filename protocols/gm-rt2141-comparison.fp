@@ -2,6 +2,7 @@
 # the judgement is a person's.
 
 protocol gm-rt2141-comparison "Comparison of simulation and test for derailment resistance, judged by a person, GM/RT2141 kind"
+  uses     plausibility-signals
   edition  "Similar to GM/RT2141"
   source   "Goetz & Polach, section 1: the document asks for comparisons and gives no quantitative limits of"
            "validation"

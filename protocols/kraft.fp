@@ -1,6 +1,7 @@
 # Misfit of signals by section, judged by the misfit of repeated measurements.
 
 protocol kraft "Misfit of the signals over a set of sections, judged by repeated runs"
+  uses    plausibility-signals
   source  "Kraft et al. 2013, as described by Goetz & Polach, Table 2 and section 2"
   author  "Fishplate"
   scope   "Comparison of simulation models by the cumulative frequency of their misfits over sections. The"

@@ -1,6 +1,7 @@
 # Every metric of the registry that rates a pair of signals, on the signals of the 12 quantities of EN 14363 Annex T.
 
 protocol metrics-side-by-side "Metrics of time histories and distributions side by side"
+  uses    plausibility-signals
   source  "Goetz & Polach, Table 2, and the publications named with each metric"
   author  "Fishplate"
   scope   "What each metric says of the same signals, section by section. No metric is a requirement of a"

@@ -1,6 +1,7 @@
 # Magnitude and phase of time histories by section: values are not pooled, and each has its own limit.
 
 protocol sprague-geers "Sprague & Geers metric of forces and accelerations, section by section"
+  uses    plausibility-signals
   source  "Sprague & Geers, A spectral-element method for modelling cavitation in transient fluid-structure"
           "interaction, 2004; applied to rail vehicles by Fries et al., as described by Goetz & Polach, Table"
           "2"

@@ -1,6 +1,7 @@
 # A stationary test without track, sections or zones: angles over cant instead of forces over distance.
 
 protocol stationary-sway "Matching error of the hysteresis loops of a stationary sway test"
+  uses     plausibility-signals
   edition  "Similar to EN 15273-2:2013, stationary sway test"
   source   "Goetz & Polach, section 3.3: largest and mean matching error on the hysteresis loop of the"
            "primary and secondary roll angle"

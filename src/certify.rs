@@ -11,7 +11,7 @@ use crate::check::{self, Overrides, diff, family::Family};
 use crate::data::Campaigns;
 use crate::data::hash::{Hasher, sha256};
 use crate::graph::{self, Graph};
-use crate::problem::Problems;
+use crate::problem::{Problems, error};
 use crate::result::{
     CampaignInfo, Certification, ChannelInfo, DataItem, Datum, FORMAT, FileHash, FilterInfo, Kind,
     OriginInfo, ParameterInfo, ProtocolFile, ProtocolInfo, Remark, THIS,
@@ -65,6 +65,14 @@ impl Compiled {
 /// Checks and compiles a protocol with overridden parameters.
 pub fn compile(family: Family, overrides: &Overrides, problems: &mut Problems) -> Option<Compiled> {
     let plan = check::check(&family, overrides, problems)?;
+    if plan.quantities.is_empty() {
+        let head = family.merged.blocks.iter().find(|block| block.kind.text == "protocol")?;
+        let says = "the protocol has no quantity, so nothing would be compared";
+        problems.push(error("no-quantity", says, head).help(
+            "protocols use a text without quantities for its rules: write `uses` in their head",
+        ));
+        return None;
+    }
     let graph = graph::from_plan(&plan);
     Some(Compiled { family, plan, graph })
 }

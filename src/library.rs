@@ -51,6 +51,9 @@ pub const SHIPPED: &[Shipped] = shipped![
     "stationary-sway",
 ];
 
+/// Shipped texts without quantities, whose rules protocols share.
+pub const SHARED: &[Shipped] = shipped!["plausibility-signals"];
+
 /// The shipped catalogues of effects; the first is the default.
 pub const CATALOGUES: &[Shipped] =
     &[Shipped { name: "bogie-vehicle", text: include_str!("../effects/bogie-vehicle.yaml") }];
@@ -82,14 +85,19 @@ pub fn parent_catalogue(name: &str, from: &Source) -> Result<Arc<Source>, Proble
     find_catalogue(name, if shipped { None } else { Path::new(&from.name).parent() })
 }
 
+/// The shipped protocols, and the texts whose rules they share.
+pub fn texts() -> impl Iterator<Item = &'static Shipped> {
+    SHIPPED.iter().chain(SHARED)
+}
+
 /// Names of the shipped protocols.
 pub fn names() -> impl Iterator<Item = &'static str> {
     SHIPPED.iter().map(|shipped| shipped.name)
 }
 
-/// The text of a shipped protocol.
+/// The text of a shipped protocol, or of one whose rules they share.
 pub fn shipped(name: &str) -> Option<Arc<Source>> {
-    let shipped = SHIPPED.iter().find(|shipped| shipped.name == name)?;
+    let shipped = texts().find(|shipped| shipped.name == name)?;
     Some(Source::new(format!("protocols/{name}.fp"), shipped.text))
 }
 

@@ -1,6 +1,7 @@
 //! A protocol compiled again from its text and the values of its parameters, as a report or a file
 //! of values carries them.
 
+use std::cell::Cell;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
@@ -13,17 +14,18 @@ use crate::result::ParameterInfo;
 use crate::source::Source;
 use crate::syntax::document::Text;
 
-/// Compiles a protocol from its files, the protocol first, then its parent, and so on. No two may
-/// have the same name.
+/// Compiles a protocol from its files, in the order of [`family::Family::sources`].
 pub fn again(
     sources: &[Arc<Source>],
     parameters: &[Setting],
     problems: &mut Problems,
 ) -> Option<Compiled> {
-    let next = |_: &str, from: &Source| {
-        let at = sources.iter().position(|source| source.name == from.name).map_or(0, |at| at + 1);
-        sources.get(at).cloned().ok_or_else(|| {
-            let says = "the protocol extends one that is not carried with it";
+    // Texts are asked for in the order in which they are carried.
+    let asked = Cell::new(0);
+    let next = |_: &str, _: &Source| {
+        asked.set(asked.get() + 1);
+        sources.get(asked.get()).cloned().ok_or_else(|| {
+            let says = "the protocol extends or uses one that is not carried with it";
             Problem::error("protocol-missing", says)
         })
     };

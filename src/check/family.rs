@@ -11,6 +11,9 @@ use crate::syntax::families::Known;
 use crate::syntax::phrase::Limit;
 use crate::syntax::{families, keys};
 
+/// The fields of the head that name other texts.
+const EXTENDS: &str = "extends";
+const USES: &str = "uses";
 /// Written in `remove` in place of a name: all blocks of the kind.
 const EVERY: &str = "every";
 /// Largest number of protocols that extend each other in a chain.
@@ -22,9 +25,10 @@ pub struct Family {
     pub merged: Document,
     /// The parent, merged with its own ancestors.
     pub parent: Option<Document>,
-    /// The text of the protocol first, then that of its parent, and so on.
+    /// The text of the protocol first, then those whose rules it uses, then those of its parent in
+    /// the same order, and so on.
     pub sources: Vec<Arc<Source>>,
-    /// Whether every ancestor was found and every family of blocks could be expanded. If not, names
+    /// Whether every text was found and every family of blocks could be expanded. If not, names
     /// may be missing and are not reported as unknown.
     pub whole: bool,
 }
@@ -32,57 +36,37 @@ pub struct Family {
 /// Finds the text of a protocol by name or path, relative to the text that names it.
 pub type Find<'a> = &'a dyn Fn(&str, &Source) -> Result<Arc<Source>, Problem>;
 
-/// Reads a protocol and its ancestors.
+/// Reads a protocol, its ancestors and the texts whose rules they use.
 pub fn read(source: &Arc<Source>, find: Find<'_>, problems: &mut Problems) -> Family {
-    let mut chain = vec![syntax::read(source, problems)];
-    let mut sources = vec![Arc::clone(source)];
-    let mut whole = true;
-    while let Some(field) = chain.last().and_then(|document| extends(document).cloned()) {
-        let name = field.value.text.trim().trim_matches('"').to_string();
-        if chain.len() > DEEPEST {
-            problems.push(problem!(
-                "extends-too-deep",
-                &field,
-                "more than {DEEPEST} protocols extend each other"
-            ));
-            whole = false;
-            break;
-        }
-        let from = Arc::clone(&chain[chain.len() - 1].source);
-        match find(&name, &from) {
-            Ok(found) => {
-                if sources.iter().any(|known| known.name == found.name) {
-                    let says = if chain.len() == 1 {
-                        "this protocol extends itself".into()
-                    } else {
-                        format!("`{name}` extends this protocol again")
-                    };
-                    problems.push(error("extends-loop", says, &field));
-                    whole = false;
-                    break;
-                }
-                chain.push(syntax::read(&found, problems));
-                sources.push(found);
-            }
-            Err(problem) => {
-                problems.push(problem.at(&field));
-                whole = false;
+    let mut reader = Reader { find, problems: &mut *problems, sources: Vec::new(), whole: true };
+    let mut chain = vec![reader.text(source)];
+    while let Some(field) = chain.last().and_then(|text| head_field(&text.document, EXTENDS)) {
+        let field = field.clone();
+        match reader.parent(&field, &chain) {
+            Some(found) => chain.push(reader.text(&found)),
+            None => {
+                reader.whole = false;
                 break;
             }
         }
     }
+    let Reader { sources, mut whole, .. } = reader;
     let mut merged: Option<Document> = None;
     let mut parent: Option<Document> = None;
     let mut known = Vec::new();
-    while let Some(written) = chain.pop() {
-        let left =
-            merged.as_ref().map(|before| without_removed(before, &written, &known, problems));
+    while let Some(Written { document: written, used }) = chain.pop() {
+        let before = merged.take();
+        let mut base = before.clone();
+        for text in used {
+            let (text, sound) = families::expand(&text, base.as_ref(), &mut known, problems);
+            whole &= sound;
+            base = Some(with_used(base, text));
+        }
+        let left = base.map(|base| without_removed(&base, &written, &known, problems));
         let (document, sound) = families::expand(&written, left.as_ref(), &mut known, problems);
         whole &= sound;
-        let together = left.map_or_else(|| document.clone(), |left| merge(left, &document));
-        if let Some(before) = merged.replace(together).filter(|_| chain.is_empty()) {
-            parent = Some(before);
-        }
+        merged = Some(left.map_or_else(|| document.clone(), |left| merge(left, &document)));
+        parent = before;
     }
     let mut merged = merged.unwrap_or_else(|| Document::empty(source));
     like::write_out(&mut merged, whole, problems);
@@ -93,12 +77,113 @@ pub fn read(source: &Arc<Source>, find: Find<'_>, problems: &mut Problems) -> Fa
     Family { merged, parent, sources, whole }
 }
 
-fn extends(document: &Document) -> Option<&Field> {
-    document
-        .blocks
-        .iter()
-        .find(|block| block.kind.text == "protocol")
-        .and_then(|block| block.field("extends"))
+/// A text, and those whose rules it uses.
+struct Written {
+    document: Document,
+    used: Vec<Document>,
+}
+
+/// Reads the texts of a protocol, in the order of [`Family::sources`].
+struct Reader<'a> {
+    find: Find<'a>,
+    problems: &'a mut Problems,
+    sources: Vec<Arc<Source>>,
+    whole: bool,
+}
+
+impl Reader<'_> {
+    fn text(&mut self, source: &Arc<Source>) -> Written {
+        let document = syntax::read(source, self.problems);
+        self.sources.push(Arc::clone(source));
+        let mut used = Vec::new();
+        for field in head(&document).into_iter().flat_map(|head| head.fields_named(USES)) {
+            match self.used(field, source) {
+                Some(text) => used.push(text),
+                None => self.whole = false,
+            }
+        }
+        Written { document, used }
+    }
+
+    fn named(&mut self, field: &Field, from: &Source) -> Option<Arc<Source>> {
+        (self.find)(named(field), from)
+            .map_err(|problem| self.problems.push(problem.at(field)))
+            .ok()
+    }
+
+    /// A text that another uses. It has no quantities, and no text behind it.
+    fn used(&mut self, field: &Field, from: &Source) -> Option<Document> {
+        let source = self.named(field, from)?;
+        let text = syntax::read(&source, self.problems);
+        self.sources.push(source);
+        let name = named(field);
+        let quantity = text.blocks.iter().find(|block| block.kind.text == "quantity");
+        let behind = [EXTENDS, USES].iter().find_map(|key| head_field(&text, key));
+        let problem = match (quantity, behind) {
+            (None, None) => return Some(text),
+            (Some(quantity), _) => {
+                let says = format!("`{name}` is a protocol with quantities and cannot be used");
+                error("uses-protocol", says, field)
+                    .also(quantity, "the first quantity")
+                    .help(format!("write `extends {name}`"))
+            }
+            (None, Some(behind)) => {
+                let says = format!("`{name}` cannot be used: it needs another text itself");
+                error("uses-protocol", says, field)
+                    .also(behind, "here")
+                    .help("name both texts in the protocol, each with `uses`")
+            }
+        };
+        self.problems.push(problem);
+        None
+    }
+
+    /// The text that the last of a chain extends.
+    fn parent(&mut self, field: &Field, chain: &[Written]) -> Option<Arc<Source>> {
+        if chain.len() > DEEPEST {
+            self.problems.push(problem!(
+                "extends-too-deep",
+                field,
+                "more than {DEEPEST} protocols extend each other"
+            ));
+            return None;
+        }
+        let found = self.named(field, &chain.last()?.document.source)?;
+        if chain.iter().any(|known| known.document.source.name == found.name) {
+            let says = if chain.len() == 1 {
+                "this protocol extends itself".into()
+            } else {
+                format!("`{}` extends this protocol again", named(field))
+            };
+            self.problems.push(error("extends-loop", says, field));
+            return None;
+        }
+        Some(found)
+    }
+}
+
+fn head(document: &Document) -> Option<&Block> {
+    document.blocks.iter().find(|block| block.kind.text == "protocol")
+}
+
+fn head_field<'a>(document: &'a Document, key: &str) -> Option<&'a Field> {
+    head(document)?.field(key)
+}
+
+/// The name or path in `extends` or `uses`.
+fn named(field: &Field) -> &str {
+    field.value.text.trim().trim_matches('"')
+}
+
+/// The rules with those of a text that is used behind them. What is there already stays as it is.
+fn with_used(base: Option<Document>, text: Document) -> Document {
+    let mut base = base.unwrap_or_else(|| Document::empty(&text.source));
+    for block in text.blocks.into_iter().filter(|block| block.kind.text != "protocol") {
+        if !base.blocks.iter().any(|known| is_same(known, &block)) {
+            base.blocks.push(block);
+        }
+    }
+    base
 }
 
 /// The parent without the blocks that the variant removes. Blocks of the variant are not in it yet,
@@ -133,19 +218,21 @@ fn without_removed(
 fn merge(parent: Document, variant: &Document) -> Document {
     let mut blocks = parent.blocks;
     for block in variant.blocks.iter().filter(|block| block.kind.text != "remove") {
-        let single = keys::of_block(block).is_some_and(|kind| kind.single);
-        let same = |other: &&mut Block| {
-            let both = other.kind.text == block.kind.text
-                && keys::of_block(other).is_some_and(|kind| kind.single) == single;
-            both && (single || other.name_text() == block.name_text())
-        };
-        match blocks.iter_mut().find(same) {
+        match blocks.iter_mut().find(|other| is_same(other, block)) {
             None => blocks.push(block.clone()),
             Some(old) if block.kind.text == "protocol" => *old = succeed(old, block),
             Some(old) => overlay(old, block),
         }
     }
     Document { blocks, ..Document::empty(&variant.source) }
+}
+
+/// Whether two blocks are of one kind and name.
+fn is_same(one: &Block, other: &Block) -> bool {
+    let single = |block| keys::of_block(block).is_some_and(|kind| kind.single);
+    one.kind.text == other.kind.text
+        && single(one) == single(other)
+        && (single(one) || one.name_text() == other.name_text())
 }
 
 /// The protocol block of the variant. Axis, time, edition and source are inherited unless the

@@ -61,8 +61,7 @@ pub fn in_reading_order(problems: &mut Problems, from: usize) {
 
 pub fn written_rules(block: &Block) -> usize {
     match block.kind.text.as_str() {
-        "zone" | "check" | "filter" | "domain" => 1,
-        "plausibility" => block.fields_named("of").count().max(1),
+        "zone" | "check" | "filter" | "domain" | "plausibility" => 1,
         "quantity" => {
             1 + block.fields_named("limit").count() + block.fields_named("report").count()
         }
@@ -85,7 +84,8 @@ pub fn rule_count(plan: &Plan) -> usize {
     };
     plan.zones.len()
         + plan.checks.len()
-        + plan.plausibility.len()
+        // One for each `of`; of `every channel`, one for each channel.
+        + plan.plausibility.iter().map(|rule| &rule.name).collect::<BTreeSet<_>>().len()
         + plan.filters.len()
         + plan.domains.len()
         + plan.verdicts.iter().filter(|verdict| verdict.name.is_some()).count()

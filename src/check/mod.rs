@@ -353,19 +353,22 @@ impl Checker<'_> {
         sections.find = self.find(of("sections").next(), &sections, zones.len());
         sections.reports = self.reports_of_sections(of("sections").next());
         let checks = of("check").filter_map(|block| self.section_check(block)).collect();
-        let plausibility =
-            of("plausibility").filter_map(|block| self.plausibility(block)).flatten().collect();
         let filters = of("filter").filter_map(|block| self.named_filter(block)).collect();
         let domains = of("domain").filter_map(|block| self.domain(block)).collect();
         let quantities: Vec<plan::Quantity> =
             of("quantity").filter_map(|block| self.quantity(block)).collect();
-        if of("quantity").next().is_none() {
+        if of("quantity").chain(of("plausibility")).next().is_none() {
             self.tell(error(
                 "no-quantity",
                 "the protocol has no quantity, so nothing would be compared",
                 head,
             ));
         }
+        let compared = self.compared_channels(&quantities);
+        let plausibility = of("plausibility")
+            .filter_map(|block| self.plausibility(block, &compared))
+            .flatten()
+            .collect();
         self.unused_parts();
         let verdicts = self.verdicts(verdict_block, head, &quantities);
         let independent = self.independent(verdict_block);

@@ -1,18 +1,68 @@
 //! Checks plausibility rules: their condition, positions and records.
 
+use super::names::Signal;
 use super::near::Near;
 use super::prelude::*;
 use super::steps::after;
+use crate::source::Source;
 
 /// Words of the field `distinct`.
 const AMONG: [&str; 3] = ["channels", "sections", "sides"];
+
+/// Written in `of` in place of a signal: every channel that a quantity reads.
+const EVERY_CHANNEL: &str = "every channel";
+/// Stands for the channels of the protocols that use a text without quantities.
+const ANY_CHANNEL: &str = "any_channel";
 
 /// Signals with their names, and the unit of values taken from them.
 type Of = (Vec<(String, Expr)>, Option<Unit>);
 
 impl Checker<'_> {
-    /// One rule for each field `of` of the block.
-    pub fn plausibility(&mut self, block: &Block) -> Option<Vec<Plausibility>> {
+    /// The channels of simulation and measurement that quantities read, in the order of the text. Of
+    /// a text without quantities, one that stands for those of the protocols that use it.
+    pub fn compared_channels(&mut self, quantities: &[Quantity]) -> Vec<String> {
+        if self.blocks_of("quantity").next().is_none() {
+            let any = Signal {
+                places: Vec::new(),
+                is: None,
+                unit: Some(Unit::si(Dimension::ONE)),
+                pattern: ANY_CHANNEL.into(),
+                track: false,
+                span: Source::new("", ANY_CHANNEL).whole(),
+            };
+            self.names.signals.insert(ANY_CHANNEL.into(), any);
+        }
+        let is_read = |(name, known): &(&String, &Signal)| {
+            let reads = |part: &Expr| matches!(&part.kind, Kind::Channel { channel, .. } if channel == *name);
+            let read =
+                || quantities.iter().flat_map(Quantity::signals).any(|signal| signal.any(&reads));
+            *name == ANY_CHANNEL || known.is.is_none() && !known.track && read()
+        };
+        self.names.signals.iter().filter(is_read).map(|(name, _)| name.clone()).collect()
+    }
+
+    /// The fields `of` of a block, each with one channel where they say `every channel`.
+    fn fields_of(block: &Block, compared: &[String]) -> Vec<Field> {
+        let each = |field: &Field| -> Vec<Field> {
+            if normalised(&field.value.text) != EVERY_CHANNEL {
+                return vec![field.clone()];
+            }
+            let named = |name: &String| {
+                let value = Text { text: name.clone(), exact: false, ..field.value.clone() };
+                Field { value, ..field.clone() }
+            };
+            compared.iter().map(named).collect()
+        };
+        block.fields_named("of").flat_map(each).collect()
+    }
+
+    /// One rule for each field `of` of the block, and for each channel where it says `every
+    /// channel`.
+    pub fn plausibility(
+        &mut self,
+        block: &Block,
+        compared: &[String],
+    ) -> Option<Vec<Plausibility>> {
         let (require, distinct, exchanged) =
             (block.field("require"), block.field("distinct"), block.field("exchanged"));
         let tests: Vec<&Field> = [require, distinct, exchanged].into_iter().flatten().collect();
@@ -30,7 +80,7 @@ impl Checker<'_> {
         let chain = self.chain_of(block);
         let mut all: Vec<Of> = Vec::new();
         let mut whole = true;
-        for field in block.fields_named("of") {
+        for field in &Self::fields_of(block, compared) {
             match self.signals_with_unit(field, chain.as_deref().unwrap_or_default()) {
                 Some(of) => all.push(of),
                 None => whole = false,

@@ -113,9 +113,8 @@ fn parent(family: &Family) -> Parent<'_> {
 }
 
 fn is_shipped(source: &Source) -> bool {
-    library::names().any(|name| {
-        source.name == format!("protocols/{name}.fp")
-            && library::shipped(name).is_some_and(|known| known.text == source.text)
+    library::texts().any(|known| {
+        source.name == format!("protocols/{}.fp", known.name) && source.text == known.text
     })
 }
 

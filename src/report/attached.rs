@@ -21,8 +21,7 @@ pub fn attachments<'a>(found: &'a Certification, results: &'a str) -> Vec<Attach
         bytes: file.text.as_bytes(),
         description: match at {
             0 => "The protocol that was evaluated",
-            1 => "The protocol that it extends",
-            _ => "A protocol that its parent extends",
+            _ => "A text that the protocol extends or uses",
         },
     };
     std::iter::once(numbers).chain(found.protocol.files.iter().enumerate().map(protocol)).collect()

@@ -104,6 +104,18 @@ pub struct MinimumOfGroups {
 }
 
 impl Quantity {
+    /// The signals that its values are taken from.
+    pub fn signals(&self) -> impl Iterator<Item = &Expr> {
+        let named = match self.evaluation.as_ref() {
+            Evaluation::Values { values, .. } => values.as_slice(),
+            Evaluation::Combined { of, .. } => std::slice::from_ref(of),
+            Evaluation::Metric { .. } => &[],
+        };
+        let named = named.iter().flat_map(|value| value.inputs.iter().flatten());
+        let own = self.positions.iter().map(|position| &position.signal);
+        own.chain(named.filter_map(|input| input.signal.as_ref()))
+    }
+
     /// Whether the samples of the record are still available after the filter.
     pub fn keeps_samples(&self) -> bool {
         self.chain.iter().all(|step| step.kind.keeps_samples())

@@ -29,6 +29,11 @@ pub const KINDS: &[Kind] = &[
                     "The parent protocol. Its rules apply unless overridden by name. Write the name of a shipped protocol, or a path relative to this file in quotes.",
                     "en14363-2016-annex-t",
                 ),
+                many(phrase(
+                    "uses",
+                    "A text without quantities whose rules the protocol shares with others. Its own rules of the same names change them field by field. Write the name of a shipped text, or a path relative to this file in quotes.",
+                    "plausibility-signals",
+                )),
                 text("edition", "The standard and its edition.", "EN 14363:2016, Annex T"),
                 SOURCE,
                 text("author", "The author of the protocol.", "Working group 10"),

@@ -1,0 +1,62 @@
+# Rules of plausibility that need no name of a channel. A protocol shares them with `uses  plausibility-signals`,
+# and changes one of them with a block of the same name.
+
+protocol plausibility-signals "Plausibility of the channels that quantities read"
+  author  "Fishplate"
+  scope   "For every kind of machine: each rule is checked at every recorded position of the channels that"
+          "quantities of the protocol read."
+  axis    distance in m
+  time    time in s
+  note    "The axis is that of the protocol which uses this text; the one here serves its own check."
+
+plausibility live "Constant channel"
+  of         every channel
+  require    held <= 5 %
+  otherwise  not used
+  cause      "a channel without a signal, or an interrupted one"
+  note       "In a working channel, the longest run of equal samples is at most 2 % of a section."
+
+plausibility saturated "Saturated channel"
+  of         every channel
+  require    at_extreme <= 2 %
+  otherwise  not used
+  cause      "a recorder or sensor at the end of its range"
+  note       "A working channel is at its largest or smallest value in less than 1 % of the samples."
+
+plausibility coarse "Channel with coarse resolution"
+  of       every channel
+  require  resolution <= 0.15 * std
+  cause    "insufficient resolution of the recorder, or too few decimals"
+  note     "Steps of 15 % of the standard deviation increase it by 0.1 % and distort percentiles."
+
+plausibility exchanged "Exchanged channels"
+  of         every channel
+  exchanged  from 0.5, by 0.3
+  cause      "two channels exchanged in one of the records"
+  note       "Forces of neighbouring wheels are alike: in sound sections a channel agrees with another one"
+             "better than with its own by at most 0.04."
+
+plausibility same_sign "Simulation and measurement with the same sign"
+  of         every channel
+  require    correlation >= -0.3
+  otherwise  not used
+  cause      "an inverted sign in one of the two records"
+  note       "Sections of 100 m contain about 10 independent waves or more: the correlation of unrelated"
+             "signals is seldom below -0.3, that of related ones never."
+
+plausibility same_size "Scatter of simulation and measurement"
+  of         every channel
+  require    measured(std) near simulated(std) within a factor of 6
+  otherwise  not used
+  cause      "the unit of one of the two records"
+
+plausibility drift "Drift of the measurement"
+  of       every channel
+  require  |drift| <= 1.5 * measured(std)
+  cause    "drift of a measuring channel"
+
+plausibility copies "Copies of records"
+  of         every channel
+  distinct   channels, sections, sides
+  otherwise  not used
+  cause      "a record or channel written twice"
