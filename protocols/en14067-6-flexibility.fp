@@ -45,6 +45,10 @@ signal body_roll "Roll angle of the car body against the track"
   is  primary_roll + secondary_roll
   in  mrad
 
+plausibility copies
+  distinct  channels, sides
+  note      "A stationary test is repeated, and each loop may be compared with the same simulation."
+
 sections
   use      whole records
   minimum  1

@@ -60,3 +60,8 @@ plausibility copies "Copies of records"
   distinct   channels, sections, sides
   otherwise  not used
   cause      "a record or channel written twice"
+
+sections
+  removed  at most 20 %
+  note     "The share is this text's own: with more sections removed, what is left may no longer stand for the"
+           "test."

@@ -31,6 +31,10 @@ channel secondary_roll "Roll angle of the secondary suspension"
   in      mrad
   column  "secondary roll angle"
 
+plausibility copies
+  distinct  channels, sides
+  note      "A stationary test is repeated, and each loop may be compared with the same simulation."
+
 sections
   use      whole records
   minimum  1

@@ -3,6 +3,7 @@
 mod about;
 mod again;
 mod opened;
+mod origin;
 
 use indexmap::IndexMap;
 
@@ -22,6 +23,7 @@ use crate::syntax::document::Block;
 pub use about::About;
 pub use again::{Rules, Setting, again};
 pub use opened::{Opened, Set, overrides};
+pub use origin::taken_names;
 
 /// A checked and compiled protocol.
 #[derive(Debug)]
@@ -164,10 +166,10 @@ pub fn protocol_info(compiled: &Compiled) -> ProtocolInfo {
         scope: plan.scope.clone(),
         notes: plan.notes.clone(),
         sha256: all.finish(),
+        origin: Some(origin::origin(family)),
         files,
         deviations: family
-            .parent
-            .as_ref()
+            .parent()
             .map_or_else(Vec::new, |parent| diff::diff(parent, &family.merged)),
         parameters: plan.parameters.iter().map(parameter_info).collect(),
         filters: plan

@@ -1,11 +1,15 @@
-//! The shipped protocols and catalogues, and the search for them by name or path.
+//! The shipped protocols and catalogues, their editions, and the search for them by name or path.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::disk;
+use crate::hash::sha256;
 use crate::problem::{Problem, problem};
 use crate::source::Source;
+
+/// The editions of released versions: name and SHA-256 in each line.
+const EDITIONS: &str = include_str!("../protocols/editions.txt");
 
 /// Maximum size of a protocol or catalogue in bytes: a hundred times the longest shipped one.
 const LARGEST: u64 = 2 << 20;
@@ -81,8 +85,7 @@ pub fn find_catalogue(name: &str, beside: Option<&Path>) -> Result<Arc<Source>, 
 /// # Errors
 /// As [`find_catalogue`].
 pub fn parent_catalogue(name: &str, from: &Source) -> Result<Arc<Source>, Problem> {
-    let shipped = CATALOGUES.iter().any(|shipped| shipped.name == name);
-    find_catalogue(name, if shipped { None } else { Path::new(&from.name).parent() })
+    find_catalogue(name, Path::new(&from.name).parent())
 }
 
 /// The shipped protocols, and the texts whose rules they share.
@@ -101,7 +104,20 @@ pub fn shipped(name: &str) -> Option<Arc<Source>> {
     Some(Source::new(format!("protocols/{name}.fp"), shipped.text))
 }
 
-/// A protocol by path, if such a file exists, else by shipped name.
+/// The edition, counted from 1, in which a text is or was shipped under a name.
+pub fn edition(name: &str, text: &str) -> Option<usize> {
+    let now = texts().find(|shipped| shipped.name == name)?;
+    let own = sha256(text.as_bytes());
+    let earlier: Vec<&str> = EDITIONS
+        .lines()
+        .filter_map(|line| line.split_once(' '))
+        .filter_map(|(of, hash)| (of == name).then_some(hash))
+        .collect();
+    let known = earlier.iter().position(|hash| *hash == own);
+    known.or((text == now.text).then_some(earlier.len())).map(|at| at + 1)
+}
+
+/// A protocol by shipped name, else by path.
 ///
 /// # Errors
 /// `no-such-protocol`, or `unreadable` with the system's error.
@@ -117,20 +133,23 @@ pub fn find(name: &str, beside: Option<&Path>) -> Result<Arc<Source>, Problem> {
 /// # Errors
 /// As [`find`].
 pub fn parent(name: &str, from: &Source) -> Result<Arc<Source>, Problem> {
-    shipped(name).map_or_else(|| find(name, Path::new(&from.name).parent()), Ok)
+    find(name, Path::new(&from.name).parent())
 }
 
-/// The text of a file, if there is one or an object that cannot be read as one, else a shipped one.
+/// A shipped text, else that of a file.
 fn file_or(
     name: &str,
     beside: Option<&Path>,
     shipped: Option<Arc<Source>>,
     missing: impl FnOnce() -> Problem,
 ) -> Result<Arc<Source>, Problem> {
+    if let Some(shipped) = shipped {
+        return Ok(shipped);
+    }
     let path = beside.map_or_else(|| PathBuf::from(name), |folder| folder.join(name));
     match disk::kind(&path).map_err(|error| unreadable(&path, &error))? {
         Some(disk::Kind::File(_) | disk::Kind::Other) => read(&path),
-        _ => shipped.ok_or_else(missing),
+        _ => Err(missing()),
     }
 }
 
@@ -152,6 +171,25 @@ pub fn read(path: &Path) -> Result<Arc<Source>, Problem> {
             let row = bytes[..at].iter().filter(|byte| **byte == b'\n').count() + 1;
             Err(problem!("not-utf8", "{shown} is not UTF-8: byte {at}, in row {row}")
                 .help("save it as UTF-8"))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_text_has_an_edition_and_released_ones_keep_theirs() {
+        for shipped in texts() {
+            assert!(edition(shipped.name, shipped.text).is_some(), "{}", shipped.name);
+            assert_eq!(edition(shipped.name, &format!("{} ", shipped.text)), None);
+        }
+        let lines = EDITIONS.lines().filter(|line| !line.starts_with('#'));
+        for line in lines {
+            let (name, hash) = line.split_once(' ').expect("name and hash");
+            assert!(texts().any(|shipped| shipped.name == name), "{line}");
+            assert!(hash.len() == 64 && hash.bytes().all(|digit| digit.is_ascii_hexdigit()));
         }
     }
 }

@@ -2,8 +2,9 @@
 //! evaluate begin here.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use crate::certify::{Compiled, Opened, Set, compile, overrides};
+use crate::certify::{Compiled, Opened, Set, compile, overrides, taken_names};
 use crate::check::family::{self, Family};
 use crate::data::{Campaign, Campaigns};
 use crate::diagnose::settings::Settings;
@@ -11,7 +12,7 @@ use crate::effects::{self, Catalogue};
 use crate::import::check::NotWritten;
 use crate::import::mapping::{Mapping, agree};
 use crate::library;
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problem, Problems, error};
 use crate::run::{self, find, needs::needs};
 use crate::simulate::{Section, model_parameters, sections};
 use crate::source::{Source, Spanned};
@@ -31,7 +32,7 @@ impl Protocol<'_> {
         match self {
             Self::Named(name) => load(name, problems),
             Self::Text(text) => {
-                Some(family::read(&Source::new(IN_MEMORY, text), &library::parent, problems))
+                Some(read(&Source::new(IN_MEMORY, text), &library::parent, problems))
             }
         }
     }
@@ -43,7 +44,24 @@ const IN_MEMORY: &str = "protocol.fp";
 /// A protocol and its ancestors, by name or path.
 pub fn load(name: &str, problems: &mut Problems) -> Option<Family> {
     let source = problems.value(library::find(name, None))?;
-    Some(family::read(&source, &library::parent, problems))
+    Some(read(&source, &library::parent, problems))
+}
+
+/// Reads a protocol and its ancestors. A shipped name stands for the shipped rules alone.
+///
+/// Problems: as of [`family::read`]; `shipped-name`.
+pub fn read(source: &Arc<Source>, find: family::Find<'_>, problems: &mut Problems) -> Family {
+    let family = family::read(source, find, problems);
+    for name in taken_names(&family) {
+        let says =
+            format!("`{0}` is a shipped protocol, and this text has another content", name.text);
+        let help = format!(
+            "give it a name of its own; to change rules of the shipped one, write `extends {}`",
+            name.text
+        );
+        problems.push(error("shipped-name", says, name).help(help));
+    }
+    family
 }
 
 /// What a diagnosis needs beside the protocol: the catalogue and its settings, and the sections of
@@ -77,13 +95,10 @@ pub fn for_import(mapping: &Mapping, problems: &mut Problems) -> Option<Option<C
     let before = problems.errors();
     let made = NotWritten::new(mapping, problems)?;
     let Some(named) = &mapping.protocol else { return Some(None) };
-    let source = match library::shipped(&named.value) {
-        Some(source) => source,
-        None => library::find(&named.value, Some(&mapping.folder))
-            .map_err(|problem| problems.push(problem.at(&named.span)))
-            .ok()?,
-    };
-    let family = family::read(&source, &library::parent, problems);
+    let source = library::find(&named.value, Some(&mapping.folder))
+        .map_err(|problem| problems.push(problem.at(&named.span)))
+        .ok()?;
+    let family = read(&source, &library::parent, problems);
     let overrides = overrides(&[], std::slice::from_ref(&made.campaign), problems)?;
     let compiled = compile(family, &overrides, problems)?;
     agree::agree(mapping, &needs(&compiled.plan, &compiled.graph), problems);
@@ -324,5 +339,5 @@ fn campaign_protocol(
         let beside = Path::new(campaign.inside(&from.name)).parent().unwrap_or(Path::new(""));
         inside(&Spanned::new(beside.join(name).display().to_string(), source.whole()))
     };
-    Some(family::read(&source, &parent, problems))
+    Some(read(&source, &parent, problems))
 }

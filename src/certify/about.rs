@@ -4,10 +4,10 @@
 use serde::{Deserialize, Serialize};
 
 use crate::check::plan::Plan;
-use crate::data::Campaigns;
 use crate::data::campaign::{Fact, ReadFile};
 use crate::data::identification::Stated;
 use crate::data::origin::{ImportedRecord, Origin};
+use crate::data::{Campaigns, qualified};
 use crate::result::{
     CampaignInfo, CampaignMember, DataItem, FileHash, FittedTo, Identification, ImportedOne,
     ImportedSide, OriginInfo, ReportItem,
@@ -33,6 +33,9 @@ struct Member {
     origin: Option<Origin>,
     facts: Vec<DataItem>,
     report: Vec<ReportItem>,
+    /// Measured records that its table of sections does not name.
+    #[serde(default)]
+    outside_table: Vec<String>,
 }
 
 impl About {
@@ -54,6 +57,7 @@ impl About {
                 origin: campaign.origin.clone(),
                 facts: campaign.facts.iter().map(fact_item).collect(),
                 report: campaign.report.iter().map(report_item).collect(),
+                outside_table: campaign.outside_table(),
             });
         }
         Self { members, vehicle: vehicles(plan, campaigns, &vehicle) }
@@ -86,6 +90,7 @@ impl About {
                 vehicle: self.vehicle.clone(),
                 facts: only.facts.clone(),
                 report: Identification(only.report.clone()),
+                outside_table: only.outside_table.clone(),
             };
         }
         let member = |member: &Member| CampaignMember {
@@ -96,6 +101,10 @@ impl About {
             report: Identification(member.report.clone()),
         };
         let members: Vec<CampaignMember> = self.members.iter().map(member).collect();
+        let outside = |member: &Member| -> Vec<String> {
+            let name = |inside: &String| qualified(Some(&member.short_name), inside);
+            member.outside_table.iter().map(name).collect()
+        };
         let of = |member: &Member| {
             let short_name = || Some(member.short_name.clone());
             member.facts.iter().map(|fact| DataItem { of: short_name(), ..fact.clone() }).collect()
@@ -107,6 +116,7 @@ impl About {
             vehicle: self.vehicle.clone(),
             facts: pool_facts(self.members.iter().map(of)),
             report: Identification(pool_report(&members)),
+            outside_table: self.members.iter().flat_map(outside).collect(),
             members,
         }
     }

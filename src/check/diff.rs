@@ -1,5 +1,8 @@
 //! Differences in meaning between two protocols, rule by rule.
 
+use std::cmp::Ordering;
+
+use super::find::AT_MOST;
 use super::overlay::slot;
 use super::positions::is_each;
 use super::prelude::*;
@@ -80,6 +83,15 @@ impl Change {
         Self { deviation: Deviation { rule, before, after }, edit }
     }
 
+    /// Whether the protocol asks for less with it: where this can be told from the two texts.
+    pub fn relaxes(&self) -> bool {
+        match &self.edit {
+            Edit::Remove(block) => REQUIREMENTS.contains(&block.kind.text.as_str()),
+            Edit::Field { old, new, .. } => relaxed(old.as_deref(), new.as_deref()) == Some(true),
+            Edit::Add { .. } | Edit::Title { .. } => false,
+        }
+    }
+
     /// A document with this change alone.
     #[must_use]
     pub fn applied(&self, document: &Document) -> Document {
@@ -118,6 +130,71 @@ impl Change {
             }
         }
         document
+    }
+}
+
+/// Blocks without which less is asked for.
+const REQUIREMENTS: [&str; 6] = ["zone", "check", "plausibility", "find", "domain", "quantity"];
+/// What is done with a fault, the mildest first.
+const TREATMENTS: [&str; 4] = ["note", "not used", "not assessable", "stop"];
+
+/// Whether a field asks for less than the old one; `None` where this cannot be told.
+fn relaxed(old: Option<&Field>, new: Option<&Field>) -> Option<bool> {
+    let key = new.or(old)?.key.text.as_str();
+    let quiet = &mut Problems::default();
+    let (Some(old), Some(new)) = (old, new) else {
+        let demands = matches!(key, "limit" | "removed") || key.starts_with("minimum");
+        return (new.is_none() && demands || new.is_some() && key == "unless").then_some(true);
+    };
+    let words = |field: &Field| normalised(&field.value.text);
+    let (before, after) = (words(old), words(new));
+    match key {
+        "limit" => {
+            let (old, new) =
+                (from_pest::limit(&old.value, quiet)?, from_pest::limit(&new.value, quiet)?);
+            let order = size(&old.bound, &new.bound)?;
+            Some(order == if new.at_least { Ordering::Less } else { Ordering::Greater })
+        }
+        "otherwise" | "faulty" => {
+            let rank = |text: &str| TREATMENTS.iter().position(|known| *known == text);
+            Some(rank(&after)? < rank(&before)?)
+        }
+        "validated" | "holds" => Some(before == EVERY_LIMIT && after != EVERY_LIMIT),
+        "removed" | "minimum" | "minimum sections" | "minimum length" | "minimum signals"
+        | "minimum pairs" => {
+            let read = |text: &str, quiet: &mut Problems| {
+                let text = text.trim_start_matches(AT_MOST).trim();
+                let text = Text { text: text.into(), exact: false, ..new.value.clone() };
+                from_pest::expression(&text, quiet)
+            };
+            let order = size(&read(&before, quiet)?, &read(&after, quiet)?)?;
+            Some(order == if key == "removed" { Ordering::Greater } else { Ordering::Less })
+        }
+        _ => None,
+    }
+}
+
+/// The rule of a verdict that asks for the most.
+const EVERY_LIMIT: &str = "when every limit holds";
+
+/// How the second of two positive bounds compares with the first: two numbers, or products and sums
+/// of which one part differs.
+fn size(old: &Phrase, new: &Phrase) -> Option<Ordering> {
+    match (&old.node, &new.node) {
+        (Node::Number(old), Node::Number(new)) if old.dimension() == new.dimension() => {
+            new.value.partial_cmp(&old.value)
+        }
+        (Node::Binary(operator, a, b), Node::Binary(other, c, d)) if operator == other => {
+            let rises = matches!(operator, Operator::Add | Operator::Multiply);
+            let falls = matches!(operator, Operator::Subtract | Operator::Divide);
+            match (a == c, b == d) {
+                (false, true) if rises || falls => size(a, c),
+                (true, false) if rises => size(b, d),
+                (true, false) if falls => size(b, d).map(Ordering::reverse),
+                _ => None,
+            }
+        }
+        _ => None,
     }
 }
 

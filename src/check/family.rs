@@ -23,14 +23,32 @@ const DEEPEST: usize = 8;
 #[derive(Clone, Debug)]
 pub struct Family {
     pub merged: Document,
-    /// The parent, merged with its own ancestors.
-    pub parent: Option<Document>,
+    /// The parent first, then its parent, and so on.
+    pub ancestors: Vec<Ancestor>,
     /// The text of the protocol first, then those whose rules it uses, then those of its parent in
     /// the same order, and so on.
     pub sources: Vec<Arc<Source>>,
+    /// The name that each of them gives itself, if it gives one.
+    pub names: Vec<Option<Text>>,
     /// Whether every text was found and every family of blocks could be expanded. If not, names
     /// may be missing and are not reported as unknown.
     pub whole: bool,
+}
+
+/// A protocol that is extended.
+#[derive(Clone, Debug)]
+pub struct Ancestor {
+    /// Merged with its own ancestors.
+    pub merged: Document,
+    /// Where its texts begin in [`Family::sources`].
+    pub from: usize,
+}
+
+impl Family {
+    /// The protocol that this one extends.
+    pub fn parent(&self) -> Option<&Document> {
+        self.ancestors.first().map(|parent| &parent.merged)
+    }
 }
 
 /// Finds the text of a protocol by name or path, relative to the text that names it.
@@ -38,7 +56,13 @@ pub type Find<'a> = &'a dyn Fn(&str, &Source) -> Result<Arc<Source>, Problem>;
 
 /// Reads a protocol, its ancestors and the texts whose rules they use.
 pub fn read(source: &Arc<Source>, find: Find<'_>, problems: &mut Problems) -> Family {
-    let mut reader = Reader { find, problems: &mut *problems, sources: Vec::new(), whole: true };
+    let mut reader = Reader {
+        find,
+        problems: &mut *problems,
+        sources: Vec::new(),
+        names: Vec::new(),
+        whole: true,
+    };
     let mut chain = vec![reader.text(source)];
     while let Some(field) = chain.last().and_then(|text| head_field(&text.document, EXTENDS)) {
         let field = field.clone();
@@ -50,13 +74,12 @@ pub fn read(source: &Arc<Source>, find: Find<'_>, problems: &mut Problems) -> Fa
             }
         }
     }
-    let Reader { sources, mut whole, .. } = reader;
+    let Reader { sources, names, mut whole, .. } = reader;
     let mut merged: Option<Document> = None;
-    let mut parent: Option<Document> = None;
+    let mut ancestors: Vec<Ancestor> = Vec::new();
     let mut known = Vec::new();
-    while let Some(Written { document: written, used }) = chain.pop() {
-        let before = merged.take();
-        let mut base = before.clone();
+    while let Some(Written { document: written, used, from }) = chain.pop() {
+        let mut base = merged.take();
         for text in used {
             let (text, sound) = families::expand(&text, base.as_ref(), &mut known, problems);
             whole &= sound;
@@ -65,22 +88,26 @@ pub fn read(source: &Arc<Source>, find: Find<'_>, problems: &mut Problems) -> Fa
         let left = base.map(|base| without_removed(&base, &written, &known, problems));
         let (document, sound) = families::expand(&written, left.as_ref(), &mut known, problems);
         whole &= sound;
-        merged = Some(left.map_or_else(|| document.clone(), |left| merge(left, &document)));
-        parent = before;
+        let together = left.map_or_else(|| document.clone(), |left| merge(left, &document));
+        if !chain.is_empty() {
+            let mut merged = together.clone();
+            // What is wrong in it is told of the whole.
+            like::write_out(&mut merged, false, &mut Problems::default());
+            ancestors.insert(0, Ancestor { merged, from });
+        }
+        merged = Some(together);
     }
     let mut merged = merged.unwrap_or_else(|| Document::empty(source));
     like::write_out(&mut merged, whole, problems);
-    if let Some(parent) = &mut parent {
-        // What is wrong in it was told above.
-        like::write_out(parent, false, &mut Problems::default());
-    }
-    Family { merged, parent, sources, whole }
+    Family { merged, ancestors, sources, names, whole }
 }
 
 /// A text, and those whose rules it uses.
 struct Written {
     document: Document,
     used: Vec<Document>,
+    /// Where its texts begin.
+    from: usize,
 }
 
 /// Reads the texts of a protocol, in the order of [`Family::sources`].
@@ -88,13 +115,13 @@ struct Reader<'a> {
     find: Find<'a>,
     problems: &'a mut Problems,
     sources: Vec<Arc<Source>>,
+    names: Vec<Option<Text>>,
     whole: bool,
 }
 
 impl Reader<'_> {
     fn text(&mut self, source: &Arc<Source>) -> Written {
-        let document = syntax::read(source, self.problems);
-        self.sources.push(Arc::clone(source));
+        let (from, document) = (self.sources.len(), self.read(source));
         let mut used = Vec::new();
         for field in head(&document).into_iter().flat_map(|head| head.fields_named(USES)) {
             match self.used(field, source) {
@@ -102,7 +129,14 @@ impl Reader<'_> {
                 None => self.whole = false,
             }
         }
-        Written { document, used }
+        Written { document, used, from }
+    }
+
+    fn read(&mut self, source: &Arc<Source>) -> Document {
+        let document = syntax::read(source, self.problems);
+        self.sources.push(Arc::clone(source));
+        self.names.push(head(&document).and_then(|head| head.name.clone()));
+        document
     }
 
     fn named(&mut self, field: &Field, from: &Source) -> Option<Arc<Source>> {
@@ -114,8 +148,7 @@ impl Reader<'_> {
     /// A text that another uses. It has no quantities, and no text behind it.
     fn used(&mut self, field: &Field, from: &Source) -> Option<Document> {
         let source = self.named(field, from)?;
-        let text = syntax::read(&source, self.problems);
-        self.sources.push(source);
+        let text = self.read(&source);
         let name = named(field);
         let quantity = text.blocks.iter().find(|block| block.kind.text == "quantity");
         let behind = [EXTENDS, USES].iter().find_map(|key| head_field(&text, key));

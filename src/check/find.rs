@@ -8,7 +8,7 @@ use super::quantities::MOST_COUNTED;
 /// What `use` says of sections that are looked for in runs.
 pub const FOUND_SECTIONS: &str = "found sections";
 /// Where each field `keep` begins, and what stands before its groups.
-const AT_MOST: &str = "at most";
+pub const AT_MOST: &str = "at most";
 const FOR_EACH: &str = " for each ";
 
 impl Checker<'_> {

@@ -146,7 +146,7 @@ pub fn check(
     }
     let document = &family.merged;
     let parent_names = family
-        .parent
+        .parent()
         .iter()
         .flat_map(|parent| {
             parent.blocks.iter().map(|block| (block.kind.text.clone(), block.own_name()))

@@ -1,5 +1,7 @@
 //! Checks plausibility rules: their condition, positions and records.
 
+use std::collections::BTreeSet;
+
 use super::names::Signal;
 use super::near::Near;
 use super::prelude::*;
@@ -7,7 +9,7 @@ use super::steps::after;
 use crate::source::Source;
 
 /// Words of the field `distinct`.
-const AMONG: [&str; 3] = ["channels", "sections", "sides"];
+const AMONG: [&str; 4] = ["channels", "sections", "sides", "records"];
 
 /// Written in `of` in place of a signal: every channel that a quantity reads.
 const EVERY_CHANNEL: &str = "every channel";
@@ -17,10 +19,31 @@ const ANY_CHANNEL: &str = "any_channel";
 /// Signals with their names, and the unit of values taken from them.
 type Of = (Vec<(String, Expr)>, Option<Unit>);
 
+/// The channels of simulation and measurement that quantities read.
+#[derive(Debug)]
+pub struct ComparedChannels {
+    /// In the order of the text.
+    names: Vec<String>,
+    /// Their columns, at the positions of the quantities.
+    columns: BTreeSet<String>,
+}
+
+impl ComparedChannels {
+    /// The positions of which no quantity reads a channel.
+    fn unread(&self, signals: &[(String, Expr)]) -> Vec<String> {
+        let read = |part: &Expr| match &part.kind {
+            Kind::Channel { column, .. } => self.columns.contains(column),
+            _ => false,
+        };
+        let unread = signals.iter().filter(|(_, signal)| !signal.any(&read));
+        unread.map(|(name, _)| name.clone()).collect()
+    }
+}
+
 impl Checker<'_> {
-    /// The channels of simulation and measurement that quantities read, in the order of the text. Of
-    /// a text without quantities, one that stands for those of the protocols that use it.
-    pub fn compared_channels(&mut self, quantities: &[Quantity]) -> Vec<String> {
+    /// What quantities read. Of a text without quantities, a channel that stands for those of the
+    /// protocols that use it.
+    pub fn compared_channels(&mut self, quantities: &[Quantity]) -> ComparedChannels {
         if self.blocks_of("quantity").next().is_none() {
             let any = Signal {
                 places: Vec::new(),
@@ -32,17 +55,22 @@ impl Checker<'_> {
             };
             self.names.signals.insert(ANY_CHANNEL.into(), any);
         }
-        let is_read = |(name, known): &(&String, &Signal)| {
-            let reads = |part: &Expr| matches!(&part.kind, Kind::Channel { channel, .. } if channel == *name);
-            let read =
-                || quantities.iter().flat_map(Quantity::signals).any(|signal| signal.any(&reads));
-            *name == ANY_CHANNEL || known.is.is_none() && !known.track && read()
-        };
-        self.names.signals.iter().filter(is_read).map(|(name, _)| name.clone()).collect()
+        let mut read = BTreeSet::from([ANY_CHANNEL.to_string()]);
+        let mut columns = BTreeSet::new();
+        for signal in quantities.iter().flat_map(Quantity::signals) {
+            signal.visit(&mut |part| {
+                if let (Kind::Channel { column, channel, .. }, false) = (&part.kind, part.track()) {
+                    read.insert(channel.clone());
+                    columns.insert(column.clone());
+                }
+            });
+        }
+        let names = self.names.signals.keys().filter(|name| read.contains(name.as_str())).cloned();
+        ComparedChannels { names: names.collect(), columns }
     }
 
     /// The fields `of` of a block, each with one channel where they say `every channel`.
-    fn fields_of(block: &Block, compared: &[String]) -> Vec<Field> {
+    fn fields_of(block: &Block, compared: &ComparedChannels) -> Vec<Field> {
         let each = |field: &Field| -> Vec<Field> {
             if normalised(&field.value.text) != EVERY_CHANNEL {
                 return vec![field.clone()];
@@ -51,7 +79,7 @@ impl Checker<'_> {
                 let value = Text { text: name.clone(), exact: false, ..field.value.clone() };
                 Field { value, ..field.clone() }
             };
-            compared.iter().map(named).collect()
+            compared.names.iter().map(named).collect()
         };
         block.fields_named("of").flat_map(each).collect()
     }
@@ -61,7 +89,7 @@ impl Checker<'_> {
     pub fn plausibility(
         &mut self,
         block: &Block,
-        compared: &[String],
+        compared: &ComparedChannels,
     ) -> Option<Vec<Plausibility>> {
         let (require, distinct, exchanged) =
             (block.field("require"), block.field("distinct"), block.field("exchanged"));
@@ -115,6 +143,7 @@ impl Checker<'_> {
             rules.push(Plausibility {
                 name: block.own_name(),
                 title: block.title_in_words(),
+                unread: compared.unread(&signals),
                 signals,
                 chain: chain.clone(),
                 test,
@@ -198,6 +227,7 @@ impl Checker<'_> {
                 "channels" => distinct.channels = true,
                 "sections" => distinct.sections = true,
                 "sides" => distinct.sides = true,
+                "records" => distinct.records = true,
                 other => {
                     return self.refuse(
                         problem!("unknown-choice", &word, "`distinct` cannot be `{other}`")

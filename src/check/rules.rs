@@ -1,6 +1,7 @@
 //! Checks the rules that belong to no quantity: axis, zones, section checks, treatment of sections,
 //! independent units.
 
+use super::find::AT_MOST;
 use super::find::FOUND_SECTIONS;
 use super::prelude::*;
 use crate::metrics::percentile::Method;
@@ -151,6 +152,7 @@ impl Checker<'_> {
             only_words: String::new(),
             faulty: OnFault::NotUsed,
             minimum: 1,
+            most_removed: None,
             reports: Vec::new(),
             percentiles: Method::Linear,
         };
@@ -175,6 +177,7 @@ impl Checker<'_> {
         if let Some(minimum) = self.count(block, "minimum", 1) {
             rules.minimum = minimum;
         }
+        rules.most_removed = block.field("removed").and_then(|field| self.most_removed(field));
         rules.margin = block.field("margin").and_then(|field| self.along_axis(field, false));
         rules.keep = block.field("keep").and_then(|field| self.keep(field));
         if let Some(field) = block.field("percentiles") {
@@ -184,6 +187,27 @@ impl Checker<'_> {
             rules.percentiles = method.unwrap_or(Method::Linear);
         }
         rules
+    }
+
+    /// `at most 20 %`.
+    fn most_removed(&mut self, field: &Field) -> Option<f64> {
+        let text = &field.value.text;
+        let share = text.strip_prefix(AT_MOST).filter(|rest| rest.starts_with(char::is_whitespace));
+        let wrong = |says: String| {
+            error("removed", says, field).help("for instance: `removed  at most 20 %`")
+        };
+        let Some(share) = share.map(str::trim) else {
+            return self
+                .refuse(wrong(format!("expected `{AT_MOST}`, found `{}`", normalised(text))));
+        };
+        let from = text.len() - share.len();
+        let span = field.value.place(from..text.len());
+        let (share, dimension) =
+            self.constant(&Text { text: share.into(), span, exact: field.value.exact })?;
+        if dimension != Dimension::ONE || !(0.0..1.0).contains(&share) {
+            return self.refuse(wrong("a share of the sections is from 0 % to below 100 %".into()));
+        }
+        Some(share)
     }
 
     /// A word, or the value of the choice parameter of this name.

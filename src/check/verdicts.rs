@@ -13,6 +13,22 @@ const HOLDS: [&str; 2] = ["holds", "does not hold"];
 /// Words of a report for a verdict that cannot be given or is not given yet. No verdict may use
 /// them.
 const NEITHER: [&str; 2] = ["not assessable", "open"];
+/// Words by which a passed verdict is known: one that is failed says none of them, unless it denies
+/// it.
+const PASSED: [&str; 11] = [
+    "validated",
+    "valid",
+    "holds",
+    "met",
+    "accepted",
+    "approved",
+    "passed",
+    "pass",
+    "fulfilled",
+    "satisfied",
+    "agreement",
+];
+const DENIALS: [&str; 5] = ["not", "no", "never", "without", "nothing"];
 /// Words in `of` that stand for all quantities of a kind.
 const KINDS: [&str; 3] = ["measured", "simulated", "compared"];
 
@@ -137,6 +153,7 @@ impl Checker<'_> {
             [good, bad] if good == bad => Some("the two words of a verdict are the same".to_string()),
             [good, bad] if good.is_empty() || bad.is_empty() => Some("one of the two words is missing".to_string()),
             [good, bad] if *good == format!("not {bad}") => Some(format!("`{good}` stands first, as the word if the verdict holds")),
+            [good, bad] if says_passed(bad, good) => Some(format!("`{bad}`, the word if the verdict does not hold, reads as if it did")),
             [good, bad] => [good, bad]
                 .into_iter()
                 .find(|word| NEITHER.contains(&word.as_str()))
@@ -321,6 +338,21 @@ impl Checker<'_> {
             }
         }
     }
+}
+
+/// Whether the word of a failed verdict has one of a passed verdict, its own or a usual one.
+fn says_passed(bad: &str, good: &str) -> bool {
+    let words = |text: &str| -> Vec<String> {
+        text.to_lowercase()
+            .split(|c: char| !c.is_alphanumeric())
+            .filter(|word| !word.is_empty())
+            .map(str::to_owned)
+            .collect()
+    };
+    let (bad, good) = (words(bad), words(good));
+    let passed = bad.windows(good.len().max(1)).any(|part| part == good)
+        || bad.iter().any(|word| PASSED.contains(&word.as_str()));
+    passed && !bad.iter().any(|word| DENIALS.contains(&word.as_str()))
 }
 
 /// The word of [`KINDS`] for a quantity.

@@ -4,12 +4,13 @@ use std::sync::Arc;
 
 use super::kit::*;
 use super::scaffold::{Scaffold, scaffold};
-use crate::check::{self, Overrides, family, family::Family};
+use crate::check::{self, Overrides, family::Family};
 use crate::data::record::{listed_headings, read_headings};
 use crate::graph;
 use crate::init::channels::{Listed, channels, listed};
 use crate::init::protocol::Parent;
 use crate::init::{File, campaign, protocol};
+use crate::prepare;
 use crate::run::needs;
 use crate::source::Source;
 
@@ -89,7 +90,7 @@ impl Init {
             Some((_, source)) => Ok(Arc::clone(source)),
             None => library::parent(name, from),
         };
-        let family = family::read(&source, &find, problems);
+        let family = prepare::read(&source, &find, problems);
         let plan = check::check(&family, &Overrides::new(), problems)?;
         let needs = needs::needs(&plan, &graph::from_plan(&plan));
         let mut files = vec![(PROTOCOL.to_string(), source.text.clone())];

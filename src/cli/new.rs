@@ -2,9 +2,10 @@
 
 use super::kit::*;
 use super::scaffold::{Scaffold, scaffold};
-use crate::check::{self, Overrides, family};
+use crate::check::{self, Overrides};
 use crate::new::records::Pair;
 use crate::new::{DOMAINS, Made, PROTOCOL_FILE, files};
+use crate::prepare;
 use crate::source::Source;
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -58,7 +59,7 @@ impl New {
         // What is written must be sound, whatever the columns are called.
         let (_, text) = made.files.iter().find(|(path, _)| path == PROTOCOL_FILE)?;
         let source = Source::new(PROTOCOL_FILE, text.clone());
-        let family = family::read(&source, &library::parent, problems);
+        let family = prepare::read(&source, &library::parent, problems);
         check::check(&family, &Overrides::new(), problems)?;
         problems.0.retain(|problem| problem.severity == crate::problem::Severity::Error);
         Some(Made { told: [told, made.told].concat(), ..made })

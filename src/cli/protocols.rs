@@ -21,6 +21,10 @@ pub fn check(names: &[String], console: &Console) -> Done {
             .and_then(|family| check::check(&family, &Overrides::new(), &mut problems));
         console.problems(&problems);
         match plan {
+            Some(plan) if plan.quantities.is_empty() => console.say(&format!(
+                "{name}: {} for protocols that use it: no errors",
+                counted(plan.plausibility.len(), "plausibility rule", "plausibility rules")
+            )),
             Some(plan) => console.say(&format!(
                 "{name}: {}, {}, {}: no errors",
                 counted(plan.quantities.len(), "quantity", "quantities"),

@@ -8,7 +8,7 @@ use crate::provenance::carried::REPORT_PDF;
 use crate::provenance::signature::{self, SecretKey, secret_key};
 use crate::provenance::statement;
 use crate::report::estimates::{self, OfLimit};
-use crate::report::{findings, number};
+use crate::report::{findings, number, rules};
 use crate::result::{Certification, QuantityResult, StatisticResult, Verdict};
 use crate::run::Settings;
 use crate::words;
@@ -108,7 +108,7 @@ fn summary(found: &Certification, console: &Console) -> String {
     for finding in &found.findings {
         out += &format!("finding: {}\n", findings::line(finding));
     }
-    for note in &found.notes {
+    for note in found.notes.iter().filter(|note| !rules::is_of_rules(note)) {
         out += &format!("note: {}\n", note.text());
     }
     let holds = found.verdict == Verdict::Validated;
@@ -116,6 +116,9 @@ fn summary(found: &Certification, console: &Console) -> String {
     let title = overall.map_or(String::new(), |verdict| format!(", {}", verdict.title));
     let words = format!("Verdict{title}: {}", found.verdict_in_words());
     out += &format!("\n{}\n", console.paint(words, Some(holds)));
+    for says in rules::beside_verdict(found) {
+        out += &format!("  {says}\n");
+    }
     for reason in &found.reasons {
         out += &format!("  {}\n", reason.text());
     }

@@ -83,6 +83,18 @@ pub fn upgrade(results: &mut Value) {
     }
 }
 
+/// What results of this format did not state at first: the path and the key.
+const LATER: [(&str, &str); 2] = [("protocol", "origin"), ("campaign", "outside_table")];
+
+/// Removes from results what those before do not state, of what may be missing.
+pub fn without_later(now: &mut Value, before: &Value) {
+    for (path, key) in LATER {
+        if before.pointer(&format!("/{path}/{key}")).is_none() {
+            each(now, path, &mut |entry| drop(entry.shift_remove(key)));
+        }
+    }
+}
+
 /// Removes from results in the present form what those before did not state.
 pub fn downgrade(results: &mut Value) {
     for (path, keys) in added().into_iter().filter(|(path, _)| *path != "sections.*") {

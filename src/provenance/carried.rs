@@ -235,6 +235,7 @@ impl Carried {
         if before::states_no_format(&self.value) {
             before::downgrade(&mut now);
         }
+        before::without_later(&mut now, &self.value);
         now
     }
 

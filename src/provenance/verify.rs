@@ -15,7 +15,7 @@ use crate::data::fingerprint::fingerprint;
 use crate::data::hash::sha256;
 use crate::data::{Campaign, Campaigns};
 use crate::problem::{Problem, Problems};
-use crate::result::{self, Certification, Kind, THIS};
+use crate::result::{self, Certification, Kind, ProtocolOrigin, THIS};
 use crate::run::Settings;
 use crate::run::find;
 use crate::run::replay::replay;
@@ -56,8 +56,22 @@ pub fn alone(carried: &Carried, given: Option<&Family>) -> (Vec<Check>, Option<C
         "the protocol in the report contradicts its results",
         details(&found),
     ));
+    checks.extend(whose(&compiled));
     checks.push(statistics(carried, &compiled));
     (checks, Some(compiled))
+}
+
+/// Whose protocol it is, by its texts and not by what the report says.
+fn whose(compiled: &Compiled) -> Option<Check> {
+    const NAME: &str = "protocol";
+    let origin = protocol_info(compiled).origin?;
+    Some(match &origin {
+        ProtocolOrigin::OwnProtocol { taken: Some(_), .. } => {
+            let says = "a text has a shipped name and another content";
+            Check::differs(NAME, says, vec![origin.text().into()])
+        }
+        _ => Check::agrees(NAME, origin.text()),
+    })
 }
 
 fn with_help(problem: &Problem) -> String {

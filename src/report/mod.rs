@@ -17,6 +17,7 @@ pub mod found;
 pub mod html;
 pub mod number;
 pub mod pdf;
+pub mod rules;
 pub mod sides;
 pub mod study;
 pub mod tables;

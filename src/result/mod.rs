@@ -28,6 +28,8 @@ pub mod verdict;
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 
+use crate::words;
+
 pub use direction::Direction;
 pub use domain::{CoordinateRange, DomainResult, DomainSection, WantedPoint};
 pub use finding::{Consequence, Finding, Occurrence};
@@ -123,6 +125,9 @@ pub struct ProtocolInfo {
     pub name: String,
     pub title: String,
     pub sha256: String,
+    /// Whose it is; not stated by versions before.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub origin: Option<ProtocolOrigin>,
     pub parameters: Vec<ParameterInfo>,
     /// Differences in meaning from the parent, rule by rule; empty without a parent.
     pub deviations: Vec<Deviation>,
@@ -145,6 +150,28 @@ pub struct ProtocolInfo {
     /// The processing graph drawn, one SVG text; it follows from the files.
     #[serde(skip)]
     pub graph_svg: String,
+}
+
+/// Whose protocol it is.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "code", rename_all = "kebab-case")]
+pub enum ProtocolOrigin {
+    /// All its texts are or were shipped with the program; the edition of the first.
+    ShippedProtocol { edition: usize },
+    /// A text of its own: how many rules differ from the protocol that it extends, and which of
+    /// them ask for less. `taken`: a shipped name that one of its texts gives itself.
+    OwnProtocol {
+        extends: Option<String>,
+        changed: usize,
+        relaxed: Vec<String>,
+        taken: Option<String>,
+    },
+}
+
+impl ProtocolOrigin {
+    pub fn text(&self) -> words::Text {
+        words::text(self)
+    }
 }
 
 /// A file of a protocol.
@@ -227,6 +254,9 @@ pub struct CampaignInfo {
     /// Identification of the report, stated or not.
     #[serde(flatten)]
     pub report: Identification,
+    /// Measured records that the table of sections does not name.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub outside_table: Vec<String>,
     /// Other keys of campaign.yaml, in their order.
     pub facts: Vec<DataItem>,
 }
@@ -327,6 +357,20 @@ pub struct SectionResult {
     pub columns: Vec<DataItem>,
     pub checks: Vec<CheckResult>,
 }
+
+impl SectionResult {
+    /// Whether it is not used for what was asked, and not for what its data are.
+    pub fn is_deselected(&self) -> bool {
+        let by_protocol =
+            |check: &CheckResult| check.name == SELECTION && check.holds == Some(false);
+        !self.used
+            && (self.checks.iter().any(by_protocol)
+                || self.reason.as_ref().is_some_and(Reason::is_choice))
+    }
+}
+
+/// Name of the check by which the protocol selects sections.
+pub const SELECTION: &str = "selection";
 
 /// One requirement on a section.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]

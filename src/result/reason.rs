@@ -154,6 +154,14 @@ pub enum Reason {
         row: Option<usize>,
         at: Option<f64>,
     },
+    /// Samples of channels that others are divided by; where the first of them is.
+    DividedByZero {
+        channels: Vec<String>,
+        zeros: usize,
+        samples: usize,
+        row: Option<usize>,
+        at: Option<f64>,
+    },
     NotFiniteNumber,
     DifferentSampling,
     ReducerUndefined {
@@ -383,6 +391,13 @@ pub enum Reason {
         sites: usize,
         minimum: usize,
     },
+    /// Of the sections, with the largest share allowed, in %.
+    TooManyRemoved {
+        removed: usize,
+        sections: usize,
+        most: f64,
+        names: Vec<String>,
+    },
     NoSectionOfCampaign {
         campaign: String,
     },
@@ -474,6 +489,8 @@ pub enum FindingData {
         record: Option<String>,
         section: Option<String>,
     },
+    /// A rule could not be checked at a position, for its samples.
+    RuleNotChecked { rule: String, reason: Reason },
     /// A measured channel is more like another simulated one than its own.
     Exchanged {
         rule: String,
@@ -546,6 +563,7 @@ impl FindingData {
         match self {
             Self::Required { rule, .. }
             | Self::Copies { rule, .. }
+            | Self::RuleNotChecked { rule, .. }
             | Self::Exchanged { rule, .. } => Some(rule),
             _ => None,
         }
@@ -557,7 +575,10 @@ impl FindingData {
             (Self::Required { required, .. }, Self::Required { required: other_one, .. }) => {
                 self.rule() == other.rule() && required == other_one
             }
-            (Self::Copies { .. }, Self::Copies { .. }) => self.rule() == other.rule(),
+            (Self::Copies { .. }, Self::Copies { .. })
+            | (Self::RuleNotChecked { .. }, Self::RuleNotChecked { .. }) => {
+                self.rule() == other.rule()
+            }
             (
                 Self::RecordChanged { imported, reason, .. },
                 Self::RecordChanged { imported: of, reason: other_one, .. },
@@ -593,6 +614,23 @@ impl Reason {
         match self {
             Self::About { subject: Subject::Verdict, reason, .. } => reason.root(),
             _ => self,
+        }
+    }
+
+    /// Whether a section is not used for what was asked, and not for what its data are.
+    pub fn is_choice(&self) -> bool {
+        matches!(self, Self::LeftOutByReduction { .. } | Self::LeftOut | Self::ValuesMissing)
+    }
+
+    /// Whether samples of a record have no finite result.
+    pub fn is_of_samples(&self) -> bool {
+        match self {
+            Self::NotFiniteSample { .. }
+            | Self::NotFiniteResult { .. }
+            | Self::DividedByZero { .. } => true,
+            Self::About { reason, .. } => reason.is_of_samples(),
+            Self::Both { first, second } => first.is_of_samples() || second.is_of_samples(),
+            _ => false,
         }
     }
 

@@ -133,7 +133,9 @@ mod tests {
     use serde::de::DeserializeOwned;
 
     use super::*;
-    use crate::result::{Channels, FindingData, Reason, Remark, Sections, VehicleValue};
+    use crate::result::{
+        Channels, FindingData, ProtocolOrigin, Reason, Remark, Sections, VehicleValue,
+    };
 
     /// A value for a field, whatever its type: the first that fits.
     const FITS: [&str; 13] = [
@@ -192,6 +194,7 @@ mod tests {
         let mut all = examples::<Reason>();
         all.extend(examples::<FindingData>());
         all.extend(examples::<Remark>());
+        all.extend(examples::<ProtocolOrigin>());
         all.extend(examples::<VehicleValue>());
         all.push(serde_json::to_value(Sections::of(&["S01"], 2)).expect("data"));
         all.push(serde_json::to_value(Channels::of(&["Y"])).expect("data"));

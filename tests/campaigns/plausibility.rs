@@ -5,7 +5,7 @@ use crate::common::texts::{text, texts};
 use std::fs;
 use std::path::Path;
 
-use crate::common::campaign::{certified, copy};
+use crate::common::campaign::{certified, copy, tiny};
 use crate::faults;
 use crate::folder::{Folder, Side};
 use crate::score::{self, Outcome};
@@ -220,6 +220,82 @@ fn a_section_that_is_not_plausible_is_not_used_and_the_others_are() {
             .iter()
             .all(|quantity| quantity.values.iter().all(|value| value.section != "S05"))
     );
+}
+
+/// A wheel that is recorded and not evaluated: its fault is told with its channel, also where a
+/// signal divides by it, and every section stays.
+#[test]
+fn a_dead_channel_that_no_quantity_reads_excludes_no_section() {
+    let all = |folder: &Folder| ["1", "2", "3", "4"].map(|zone| folder.sections(zone)).concat();
+    let found = with(|folder| {
+        let sections = all(folder);
+        folder.channels(Side::Measurement, &sections, &["Q_2L"], |values| vec![0.0; values.len()])
+    });
+    assert!(found.sections.iter().all(|section| section.used), "{:?}", found.sections[0].reason);
+    assert_eq!(found.verdict, Verdict::Validated, "{:?}", texts(&found.reasons));
+    let says = |code: &str| {
+        let finding = found.findings.iter().find(|finding| finding.code == code).expect("told");
+        assert_eq!(finding.consequence, Consequence::Note);
+        finding.first.text().to_string()
+    };
+    assert!(says("wheel_climb").contains("Q_2L drops out: zero in all samples"));
+    assert!(says("live").contains("Constant channel"));
+    // A wheel that is evaluated: the sections are not used, for the same reason.
+    let found = with(|folder| {
+        folder.channels(Side::Measurement, &["S05".to_string()], &["Q_3L"], |values| {
+            values.iter().enumerate().map(|(at, q)| if at == 700 { 0.0 } else { *q }).collect()
+        })
+    });
+    let section = found.sections.iter().find(|section| section.section == "S05").expect("S05");
+    assert!(!section.used);
+    let reason = text(&section.reason).unwrap_or_default();
+    assert!(reason.contains("Q_3L drops out: zero in 1 of "), "{reason}");
+}
+
+/// Every protocol that compares both sides has a rule against a simulation that is the measurement.
+#[test]
+fn no_shipped_protocol_validates_a_copy_of_the_measurement() {
+    let folder = tiny();
+    for record in fs::read_dir(folder.path().join("measurement")).expect("a folder") {
+        let record = record.expect("a record");
+        let to = folder.path().join("simulation").join(record.file_name());
+        fs::copy(record.path(), to).expect("copied");
+    }
+    for protocol in [
+        "en14363-2016-annex-t",
+        "sprague-geers",
+        "bogojevic-lucanin",
+        "metrics-side-by-side",
+        "code-benchmark-reference",
+        "en14067-6-wheel-unloading",
+    ] {
+        let found = certified(folder.path(), protocol, &[])
+            .unwrap_or_else(|problems| panic!("{protocol}: {}", problems.render(false)));
+        assert_eq!(found.verdict, Verdict::NotAssessable, "{protocol}");
+        let copies = |finding: &&Finding| finding.code == "copies";
+        assert!(found.findings.iter().any(|finding| copies(&finding)), "{protocol}");
+    }
+}
+
+/// More sections removed than a protocol allows: the reason has the numbers and the sections.
+#[test]
+fn a_verdict_needs_most_of_the_sections() {
+    let removed = |count: usize| {
+        let folder = tiny();
+        let mut changed = Folder::read(folder.path());
+        let sections: Vec<String> = (1..=count).map(|at| format!("S{at:02}")).collect();
+        changed.channels(Side::Measurement, &sections, &["Y_1L"], |values| vec![1.0; values.len()]);
+        changed.write(folder.path());
+        let found = certified(folder.path(), "sprague-geers", &[]).expect("a result");
+        assert_eq!(found.sections.iter().filter(|section| !section.used).count(), count);
+        (found.verdict, texts(&found.reasons))
+    };
+    let (_, reasons) = removed(2);
+    assert!(!reasons.iter().any(|reason| reason.contains("removed")), "{reasons:?}");
+    let (verdict, reasons) = removed(3);
+    assert_eq!(verdict, Verdict::NotAssessable);
+    let says = "3 of 12 sections are removed, at most 20 % allowed: S01, S02, S03";
+    assert!(reasons.iter().any(|reason| reason == says), "{reasons:?}");
 }
 
 #[test]

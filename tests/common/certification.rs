@@ -215,6 +215,7 @@ pub fn empty() -> Certification {
         protocol: ProtocolInfo {
             name: "empty".into(),
             title: String::new(),
+            origin: None,
             edition: None,
             source: None,
             scope: None,
@@ -236,6 +237,7 @@ pub fn empty() -> Certification {
             files: Vec::new(),
             vehicle: Vec::new(),
             facts: Vec::new(),
+            outside_table: Vec::new(),
             report: Identification::default(),
             origin: None,
         },
@@ -654,6 +656,7 @@ fn campaign(sections: &[SectionResult]) -> CampaignInfo {
         }
     }
     CampaignInfo {
+        outside_table: Vec::new(),
         members: Vec::new(),
         origin: None,
         name: "On-track tests of the coach, spring 2023".into(),
@@ -695,6 +698,7 @@ fn protocol() -> ProtocolInfo {
     ProtocolInfo {
         name: "en14363-2016-annex-t-coach".into(),
         title: "EN 14363:2016, Annex T, with a tighter limit".into(),
+        origin: None,
         edition: Some("EN 14363:2016".into()),
         source: Some("Götz and Polach 2018, Table 1".into()),
         scope: Some(

@@ -517,6 +517,7 @@ fn campaign() -> CampaignInfo {
         });
     }
     CampaignInfo {
+        outside_table: Vec::new(),
         members: Vec::new(),
         origin: None,
         name: "Coach, line tests".into(),
@@ -539,6 +540,7 @@ fn protocol() -> ProtocolInfo {
     ProtocolInfo {
         name: "annex_t_variant".into(),
         title: "Model validation, Method 1 with a stricter limit".into(),
+        origin: None,
         edition: Some("EN 14363:2016".into()),
         source: Some("EN 14363:2016, Annex T".into()),
         scope: Some("On-track tests of vehicles with bogies".into()),

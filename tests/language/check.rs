@@ -387,7 +387,7 @@ fn variant(text: &str) -> (Family, Option<Plan>, Problems) {
 fn deviations(text: &str) -> Vec<(String, Option<String>, Option<String>)> {
     let (family, plan, problems) = variant(text);
     assert!(plan.is_some(), "{}", problems.render(false));
-    let parent = family.parent.as_ref().expect("a parent");
+    let parent = family.parent().expect("a parent");
     diff(parent, &family.merged)
         .into_iter()
         .map(|deviation| (deviation.rule, deviation.before, deviation.after))
@@ -484,7 +484,7 @@ fn of_pairs(text: &str) -> (Vec<String>, Vec<Difference>) {
     let family = family::read(&variant, &|_, _| Ok(Source::new("pairs.fp", PAIRS)), &mut problems);
     let plan = check::check(&family, &Overrides::new(), &mut problems)
         .unwrap_or_else(|| panic!("{}", problems.render(false)));
-    let parent = family.parent.as_ref().expect("a parent");
+    let parent = family.parent().expect("a parent");
     let found = diff(parent, &family.merged)
         .into_iter()
         .map(|found| (found.rule, found.before, found.after))
@@ -620,7 +620,7 @@ fn the_same_meaning_is_no_difference() {
 fn shipped_variants_differ_only_where_they_say() {
     let rules = |name: &str| {
         let (family, _, _) = checked(&library::shipped(name).expect("a shipped protocol"));
-        let found = diff(family.parent.as_ref().expect("a parent"), &family.merged);
+        let found = diff(family.parent().expect("a parent"), &family.merged);
         found.into_iter().map(|deviation| deviation.rule).collect::<Vec<_>>()
     };
     assert_eq!(

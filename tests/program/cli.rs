@@ -182,6 +182,63 @@ fn results_have_the_keys_of_the_contract() {
     assert_eq!(results["sections"][0]["used"], true);
 }
 
+/// A shipped name means the shipped rules; a protocol of one's own says beside the verdict what it
+/// changes of them, and `verify` says it again from the texts.
+#[test]
+fn a_verdict_says_whose_protocol_it_is() {
+    let out = folder();
+    let path = |name: &str| out.path().join(name).display().to_string();
+    let write = |name: &str, text: &str| {
+        fs::write(out.path().join(name), text).expect("a file");
+        path(name)
+    };
+    let shipped = &fishplate::library::shipped("en14363-2016-annex-t").expect("shipped").text;
+    let forged = write("forged.fp", &shipped.replace("std 5 kN", "std 500 kN"));
+    let campaign = "examples/coach-good";
+    let results = ["--only", "results"];
+    let with = |protocol: &str, out: &str| {
+        let more = [&["--protocol", protocol], &results[..]].concat();
+        certify(campaign, Path::new(&path(out)), &more)
+    };
+    let (code, _, said) = with(&forged, "a");
+    assert_eq!(code, 2);
+    assert!(
+        said.contains("shipped-name") && said.contains("extends en14363-2016-annex-t"),
+        "{said}"
+    );
+    let child = write("child.fp", "protocol child \"x\"\n  extends  \"forged.fp\"\n");
+    assert_eq!(with(&child, "a").0, 2);
+    let copied = write("copied.fp", shipped);
+    let (code, printed, said) = with(&copied, "b");
+    assert_eq!((code, printed.contains("own protocol")), (0, false), "{said}");
+    // A file of the shipped name in the current folder changes nothing.
+    write("sprague-geers", "protocol x \"not this one\"\n");
+    let own = Command::new(env!("CARGO_BIN_EXE_fishplate"))
+        .args(["check", "sprague-geers"])
+        .current_dir(out.path())
+        .output();
+    assert!(own.expect("the program runs").status.success());
+    let relaxed = write(
+        "relaxed.fp",
+        "protocol relaxed \"Own\"\n  extends  en14363-2016-annex-t\n\nquantity Y_qst\n  limit  std 500 kN\n\n\
+         quantity Q_qst\n  limit  std 8 kN * (1 + 0.01 * Q0/kN)\n\nquantity Y_max\n  limit  std 1 kN\n\n\
+         remove\n  plausibility  live\n",
+    );
+    let (_, printed, said) = with(&relaxed, "c");
+    let says = "own protocol, extends en14363-2016-annex-t: 4 rules changed, 3 relaxed \
+                (quantity Y_qst, limit std; quantity Q_qst, limit std; plausibility live)";
+    let verdict = printed.find("Verdict").unwrap_or_else(|| panic!("{said}"));
+    assert!(printed[verdict..].contains(says), "{printed}");
+    let (code, printed, _) = run(&["verify", &path("c"), campaign, "--protocol", &relaxed]);
+    assert!(printed.contains(says), "{code} {printed}");
+    let (_, printed, _) = run(&["verify", &path("b"), campaign]);
+    assert!(printed.contains("shipped, edition 2"), "{printed}");
+    let more = ["--set", "mean_limit_share=10", "--only", "results"];
+    let (_, printed, _) = certify(campaign, Path::new(&path("d")), &more);
+    let verdict = printed.find("Verdict").expect("a verdict");
+    assert!(printed[verdict..].contains("`mean_limit_share` 10 (default 2/3"), "{printed}");
+}
+
 #[test]
 fn protocols_are_checked_formatted_converted_and_compared() {
     let out = folder();

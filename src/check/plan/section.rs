@@ -51,12 +51,23 @@ pub struct Plausibility {
     /// Each position with the name of its signal; empty where the rule uses only data or named
     /// signals.
     pub signals: Vec<(String, Expr)>,
+    /// The positions among them of which no quantity reads a channel.
+    pub unread: Vec<String>,
     pub chain: Vec<Step>,
     pub test: Test,
     pub unless: Option<Expr>,
     pub otherwise: OnFault,
     pub cause: Option<String>,
     pub span: Span,
+}
+
+impl Plausibility {
+    /// What follows from a finding at a position. One at a position that no quantity reads is told,
+    /// and the section stays.
+    pub fn otherwise_at(&self, position: &str) -> OnFault {
+        let unread = self.unread.iter().any(|unread| unread == position);
+        if unread && self.otherwise == OnFault::NotUsed { OnFault::Note } else { self.otherwise }
+    }
 }
 
 /// What a plausibility rule tests.
@@ -111,6 +122,8 @@ pub struct Distinct {
     pub sections: bool,
     /// Simulation and measurement.
     pub sides: bool,
+    /// Simulation and measurement, where all channels of the rule are the same from end to end.
+    pub records: bool,
 }
 
 /// From when on a measured channel is reported that correlates with another simulated channel of
@@ -139,6 +152,8 @@ pub struct SectionRules {
     pub only_words: String,
     pub faulty: OnFault,
     pub minimum: usize,
+    /// The largest share of the sections that may be removed.
+    pub most_removed: Option<f64>,
     /// Numbers of section data that are printed.
     pub reports: Vec<Report>,
     pub percentiles: Method,

@@ -82,6 +82,17 @@ impl Campaign {
         Ok(cells(names))
     }
 
+    /// Names of measured records that the table of sections does not name, as far as the records
+    /// can be listed; of runs, which hold sections, none.
+    pub fn outside_table(&self) -> Vec<String> {
+        if self.sections.is_none() || !self.runs().is_empty() {
+            return Vec::new();
+        }
+        let named: HashSet<&str> = self.names.iter().map(|cell| cell.value.as_str()).collect();
+        let measured = self.measured().unwrap_or_default().into_iter().map(|cell| cell.value);
+        measured.filter(|name| !named.contains(name.as_str())).collect()
+    }
+
     pub(super) fn record_folder(
         &self,
         which: WhichRecord,

@@ -88,6 +88,7 @@ fn inputs(found: &Comparison) -> CampaignInfo {
         files: found.campaigns.iter().flat_map(of).collect(),
         vehicle: Vec::new(),
         facts: Vec::new(),
+        outside_table: Vec::new(),
         origin: None,
         report: Identification::default(),
     }
@@ -99,6 +100,7 @@ fn rules(found: &Comparison) -> ProtocolInfo {
         name: found.protocols.iter().map(|one| one.name.as_str()).collect::<Vec<_>>().join(", "),
         title: found.protocols.iter().map(|one| one.title.as_str()).collect::<Vec<_>>().join("; "),
         sha256: found.work.sha256.clone(),
+        origin: None,
         edition: None,
         source: None,
         scope: None,

@@ -4,8 +4,9 @@ use std::collections::BTreeSet;
 
 use super::{View, campaign, identity, verdicts, wording};
 use crate::report::document::*;
-use crate::report::number;
-use crate::result::{CampaignInfo, Kind, ProtocolInfo, QuantityResult, Verdict};
+use crate::report::number::{self, raised};
+use crate::report::rules;
+use crate::result::{CampaignInfo, Certification, Kind, ProtocolInfo, QuantityResult, Verdict};
 
 /// Reasons on the cover, and where a table of verdicts takes their room; the summary lists all.
 const REASONS: usize = 8;
@@ -48,7 +49,8 @@ pub fn cover(view: &View<'_>) -> Cover {
         note: found.verdict_note.as_ref().map(|note| note.text().into()),
         sentence: wording::sentence(found).to_owned() + &origin.unwrap_or_default(),
     };
-    let mut blocks = reasons(view);
+    let mut blocks = Vec::from_iter(beside(view));
+    blocks.extend(reasons(view));
     blocks.extend(verdicts_with_a_name(view));
     blocks.push(Block::Tiles(key_facts(view)));
     blocks.extend(identification(view));
@@ -58,6 +60,13 @@ pub fn cover(view: &View<'_>) -> Cover {
         parts_in_contents: true,
         ..margins(&found.campaign, &found.protocol, &view.words.over, result)
     }
+}
+
+/// What the reader must know of the rules to read the verdict.
+fn beside(view: &View<'_>) -> Option<Block> {
+    let says = rules::beside_verdict(view.found);
+    let says: Vec<_> = says.into_iter().map(|says| view.symbols.text(&raised(says))).collect();
+    (!says.is_empty()).then_some(Block::Boxed { tone: None, title: "Rules", entries: says })
 }
 
 /// What the overall verdict came to.
@@ -144,9 +153,23 @@ fn identification(view: &View<'_>) -> Vec<Block> {
     vec![Block::on_paper(paper), Block::on_screen([Block::Facts(vec![all])])]
 }
 
+/// `12 used, 2 removed, 3 left out of the table`.
+fn sections(found: &Certification) -> String {
+    let used = found.sections.iter().filter(|section| section.used).count();
+    let deselected = found.sections.iter().filter(|section| section.is_deselected()).count();
+    let removed = found.sections.len() - used - deselected;
+    let others = [
+        (removed, "removed"),
+        (deselected, "not selected"),
+        (found.campaign.outside_table.len(), "left out of the table"),
+    ];
+    let others = others.iter().filter(|(count, _)| *count > 0);
+    let others = others.map(|(count, what)| format!(", {count} {what}"));
+    format!("{used} of {} used{}", found.sections.len(), others.collect::<String>())
+}
+
 fn key_facts(view: &View<'_>) -> Vec<Fact> {
     let found = view.found;
-    let used = found.sections.iter().filter(|section| section.used).count();
     let deciding: Vec<&QuantityResult> =
         found.quantities.iter().filter(|quantity| !quantity.decides_nothing()).collect();
     let holding = deciding.iter().filter(|quantity| quantity.holds == Some(true)).count();
@@ -167,7 +190,7 @@ fn key_facts(view: &View<'_>) -> Vec<Fact> {
     if !found.campaign.members.is_empty() {
         facts.push(Fact::new("Campaigns", found.campaign.members.len().to_string()));
     }
-    facts.push(Fact::new("Sections", format!("{used} of {} used", found.sections.len())));
+    facts.push(Fact::new("Sections", sections(found)));
     let compared = |name: &str| Fact::new(name, rows(false));
     let pairs = || {
         let compared = found.quantities.iter().filter(|quantity| quantity.from.is_none());

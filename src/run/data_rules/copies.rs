@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use rayon::slice::ParallelSliceMut;
 
 use super::consequence::consequence;
-use crate::check::plan::{Distinct, Plan, Plausibility, Test};
+use crate::check::plan::{Distinct, OnFault, Plan, Plausibility, Test};
 use crate::data::{RecordKind, WhichRecord};
 use crate::result::{Channels, Finding, FindingData, Occurrence, Reason};
 use crate::run::sections::Unit;
@@ -49,9 +49,21 @@ pub fn find(plan: &Plan, units: &[Unit], values: &[SectionValues]) -> Vec<Findin
             if again && (which.kind, of.kind) == (RecordKind::Simulation, RecordKind::Simulation) {
                 continue;
             }
+            let prints = values[later].prints.iter();
+            let all = prints.filter(|print| print.rule == rule.name && print.which == which);
+            let part = later == earlier && which != of && found.channels.len() < all.count();
+            if part && !distinct.sides {
+                continue;
+            }
             let (later, earlier) = (&units[later], &units[earlier]);
+            // A rule of several channels stands once for each of them.
+            let of_name = plan.plausibility.iter().filter(|other| other.name == rule.name);
+            let unread: Vec<&String> = of_name.flat_map(|rule| &rule.unread).collect();
+            let read = |(later, _): &(&str, &str)| !unread.iter().any(|unread| *unread == later);
+            let note = Plausibility { otherwise: OnFault::Note, ..rule.clone() };
+            let stays = rule.otherwise == OnFault::NotUsed && !found.channels.iter().any(read);
             findings.push(finding(
-                rule,
+                if stays { &note } else { rule },
                 (later, found.later),
                 (&earlier.name, found.earlier),
                 &found.channels,
@@ -134,7 +146,13 @@ fn shared<'a>(rule: &str, distinct: Distinct, values: &'a [SectionValues]) -> Sh
         }
         let asked = match (earlier.0 == later.0, a.which == b.which, a.channel == b.channel) {
             (true, true, _) => distinct.channels,
-            (true, false, _) => distinct.sides,
+            // What two simulations do differently may not act on a channel at all.
+            (true, false, _) => {
+                let kinds = (a.which.kind, b.which.kind);
+                let whole = distinct.records && a.channel == b.channel && count >= shorter;
+                (distinct.sides || whole)
+                    && kinds != (RecordKind::Simulation, RecordKind::Simulation)
+            }
             (false, true, true) => distinct.sections,
             // Another channel of another section: reported if equality between sections and between
             // channels (or sides) is to be found.
@@ -210,7 +228,7 @@ mod tests {
         SectionValues { prints, ..SectionValues::default() }
     }
 
-    const ALL: Distinct = Distinct { channels: true, sections: true, sides: true };
+    const ALL: Distinct = Distinct { channels: true, sections: true, sides: true, records: false };
 
     #[test]
     fn copies_are_found_where_they_stand_and_live_signals_are_not() {
@@ -256,7 +274,7 @@ mod tests {
             print("Y", RecordKind::Measurement),
             print("Z", RecordKind::Simulation),
         ])];
-        let sides = Distinct { channels: false, sections: false, sides: true };
+        let sides = Distinct { channels: false, sections: false, sides: true, records: false };
         let found = shared("copies", sides, &sections);
         assert!(found.keys().all(|(_, later, _, earlier)| later != earlier), "{found:?}");
     }

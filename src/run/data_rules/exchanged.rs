@@ -71,7 +71,7 @@ fn in_record(
         };
         findings.push(Finding {
             cause: rule.cause.clone().map(Reason::said),
-            consequence: consequence(rule.otherwise),
+            consequence: consequence(rule.otherwise_at(name)),
             ..Finding::note(&rule.name, first)
         });
     }

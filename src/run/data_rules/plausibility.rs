@@ -147,11 +147,33 @@ impl Position<'_> {
         }
     }
 
+    /// The rule asks for samples that are not finite.
+    fn not_checked(
+        &self,
+        inputs: &[Result<f64, Reason>],
+        record: Option<String>,
+    ) -> Option<Finding> {
+        let failed = inputs.iter().filter_map(|input| input.as_ref().err());
+        let reason = failed.into_iter().find(|reason| reason.is_of_samples())?.clone();
+        let data = FindingData::RuleNotChecked { rule: self.rule.title.clone(), reason };
+        let first = Occurrence {
+            channel: (!self.name.is_empty()).then(|| self.name.to_string()),
+            section: Some(self.section.unit.name.clone()),
+            campaign: self.section.unit.campaign_name.clone(),
+            record,
+            ..data.into()
+        };
+        let consequence = consequence(self.rule.otherwise_at(self.name));
+        Some(Finding { consequence, ..Finding::note(&self.rule.name, first) })
+    }
+
     /// `None` where the requirement is met, or cannot be evaluated because a datum is missing.
     fn finding(&self, inputs: &[Result<f64, Reason>], record: Option<String>) -> Option<Finding> {
         let known = Known { inputs, ..self.section.known };
-        if flag(&self.requirement.holds, &known) != Ok(false) {
-            return None;
+        match flag(&self.requirement.holds, &known) {
+            Ok(false) => {}
+            Ok(true) => return None,
+            Err(_) => return self.not_checked(inputs, record),
         }
         let failing = self
             .requirement
@@ -197,7 +219,7 @@ impl Position<'_> {
             expected,
             unit,
         };
-        let consequence = consequence(self.rule.otherwise);
+        let consequence = consequence(self.rule.otherwise_at(self.name));
         Some(Finding { cause, consequence, ..Finding::note(&self.rule.name, first) })
     }
 }

@@ -215,8 +215,8 @@ impl State<'_> {
         reason.about(Subject::Step, &self.graph.nodes[id].label.text)
     }
 
-    /// Computes a node. Where a step of a quantity is not possible, only this node has no value.
-    /// Samples without a finite result are a fault of the record.
+    /// Computes a node. Where a step is not possible, or a sample has no finite result, only this
+    /// node has no value, and what needs it.
     fn value(&mut self, id: NodeId) -> Result<(), Reason> {
         if self.without_input(id) {
             return Ok(());
@@ -224,6 +224,10 @@ impl State<'_> {
         match self.evaluate(id) {
             Ok(value) => self.values[id] = Some(value),
             Err(reason) if self.asks(id) => self.failed[id] = Some(self.of_step(id, reason)),
+            Err(reason) if reason.is_of_samples() => {
+                let reason = self.of_step(id, reason);
+                self.failed[id] = Some(reason.about(Subject::File, &self.opened.file.path));
+            }
             Err(reason) => return Err(self.of_step(id, reason)),
         }
         Ok(())
@@ -355,6 +359,28 @@ impl State<'_> {
         Ok(())
     }
 
+    /// Why a quotient is not finite, if its divisor is zero: the channels that it comes from.
+    fn without_zeros(&self, divisor: NodeId, reason: Reason) -> Reason {
+        let Some(Signal::Samples(samples)) = &self.values[divisor] else { return reason };
+        let zeros = samples.values.iter().filter(|value| **value == 0.0).count();
+        let (mut channels, mut open) = (Vec::new(), vec![divisor]);
+        while let Some(id) = open.pop() {
+            match &self.graph.nodes[id].operation {
+                Operation::Read { column } if !channels.contains(column) => {
+                    channels.push(column.clone());
+                }
+                _ => open.extend(&self.graph.nodes[id].inputs),
+            }
+        }
+        match (reason, zeros) {
+            (Reason::NotFiniteResult { row, at }, 1..) => {
+                let samples = samples.values.len();
+                Reason::DividedByZero { channels, zeros, samples, row, at }
+            }
+            (reason, _) => reason,
+        }
+    }
+
     fn evaluate(&mut self, id: NodeId) -> Result<Signal, Reason> {
         let node = &self.graph.nodes[id];
         let input = |index: usize| self.signal(node.inputs[index]);
@@ -375,7 +401,8 @@ impl State<'_> {
                     self.found.iter().find_map(of).ok_or(Reason::SectionNumberMissing)?,
                 ))
             }
-            Operation::Arithmetic(operator) => arithmetic(*operator, input(0)?, input(1)?),
+            Operation::Arithmetic(operator) => arithmetic(*operator, input(0)?, input(1)?)
+                .map_err(|reason| self.without_zeros(node.inputs[1], reason)),
             Operation::Negative => each(input(0)?, |value| -value),
             Operation::Power(exponent) => each(input(0)?, |value| value.powi(i32::from(*exponent))),
             Operation::Apply(function) => {

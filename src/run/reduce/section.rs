@@ -181,6 +181,10 @@ fn quantities(sides: &Sides<'_>, active: &Active, values: &mut SectionValues) {
         for at in (0..quantity.positions.len()).filter(|at| active[index][*at]) {
             match sides.rows(index, at) {
                 Ok(found) => rows.extend(found),
+                // A record without finite samples where a quantity needs them is not used.
+                Err(reason) if reason.is_of_samples() => {
+                    values.fault.get_or_insert(reason);
+                }
                 Err(reason) => {
                     let signal = &quantity.positions[at].name;
                     values.impossible.push((index, reason.about(Subject::Signal, signal)));

@@ -9,7 +9,8 @@ use crate::check::plan::{Expr, Kind, Plan, SectionRules, Zone};
 use crate::check::possible::{Possible, possible};
 use crate::check::values::{Values, Watched};
 use crate::result::{
-    CheckResult, DataItem, Datum, Finding, FindingData, Occurrence, Reason, Sections, Subject,
+    CheckResult, DataItem, Datum, Finding, FindingData, Occurrence, Reason, SELECTION, Sections,
+    Subject,
 };
 
 /// Relative tolerance for a minimum length, for the rounding of section ends written with two
@@ -29,7 +30,7 @@ pub fn check_data(plan: &Plan, facts: &Facts, units: &mut [Unit]) {
         let zone = zone.and_then(|name| plan.zones.iter().find(|zone| zone.name == *name));
         let known = unit.known(facts);
         let SectionRules { only, only_words, .. } = &plan.sections;
-        let selection = ("selection", "Selection of sections".to_string());
+        let selection = (SELECTION, "Selection of sections".to_string());
         let mut checks: Vec<CheckResult> = Vec::new();
         checks.extend(condition(plan, &known, selection, (only, only_words)));
         if let Some(zone) = zone {

@@ -6,6 +6,7 @@ use std::collections::{BTreeSet, HashMap};
 use indexmap::IndexMap;
 
 use super::verdicts;
+use crate::check::evaluate::flag;
 use crate::check::plan::{Chosen, Evaluation, Pairing, Plan, Quantity, Records, Zone};
 use crate::result::{
     Consequence, Figures, Finding, PairValue, QuantityResult, Reason, Reported, Verdict,
@@ -57,6 +58,7 @@ pub fn judge(
         missing.push(Reason::TooFewSections { used, sites, minimum });
     }
     missing.extend(without_sections(units));
+    missing.extend(too_many_removed(plan, facts, units));
     missing.extend(not_plausible(plan, told.findings, missing.is_empty()));
     missing.extend(changed::reason(told.findings));
     missing.extend(told.barred);
@@ -92,6 +94,30 @@ fn without_sections(units: &[Unit]) -> Vec<Reason> {
     }
     let unused = used.into_iter().filter(|(_, any)| !any);
     unused.map(|(name, _)| Reason::NoSectionOfCampaign { campaign: name.into() }).collect()
+}
+
+/// Relative tolerance for the number of sections that a share allows.
+const ROUNDING: f64 = 1e-9;
+
+/// More sections are removed than the protocol allows: not used, and neither deselected by it nor
+/// left out by a reduction.
+fn too_many_removed(plan: &Plan, facts: &Facts, units: &[Unit]) -> Option<Reason> {
+    let most = plan.sections.most_removed?;
+    let given = |unit: &&Unit| {
+        let only = plan.sections.only.as_ref();
+        only.is_none_or(|only| flag(only, &unit.known(facts)) != Ok(false))
+            && unit.fault.as_ref().is_none_or(|fault| !fault.is_choice())
+    };
+    let given: Vec<&Unit> = units.iter().filter(given).collect();
+    let removed = given.iter().filter(|unit| unit.fault.is_some());
+    let removed: Vec<String> = removed.map(|unit| unit.name.clone()).collect();
+    let allowed = most * given.len() as f64 * (1.0 + ROUNDING);
+    (removed.len() as f64 > allowed).then(|| Reason::TooManyRemoved {
+        removed: removed.len(),
+        sections: given.len(),
+        most: 100.0 * most,
+        names: removed,
+    })
 }
 
 /// Number of different sites of the sections.

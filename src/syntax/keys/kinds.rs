@@ -405,6 +405,11 @@ pub const KINDS: &[Kind] = &[
                     "12",
                 ),
                 phrase(
+                    "removed",
+                    "The share of the sections that may be removed: not used for what their data or records are. With more, the verdict is not assessable.",
+                    "at most 20 %",
+                ),
+                phrase(
                     "step",
                     "Of found sections: the distance between two places that are tried.",
                     "1 m",

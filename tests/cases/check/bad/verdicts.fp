@@ -68,6 +68,14 @@ verdict no_word
   holds  when every limit holds
   words  yes,
 
+verdict passed_word
+  holds  when every limit holds
+  words  "good enough", "valid with remarks"
+
+verdict own_passed_word
+  holds  when every limit holds
+  words  green, "green for now"
+
 verdict taken_word
   holds  when every limit holds
   words  closed, open

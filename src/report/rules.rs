@@ -1,0 +1,16 @@
+//! What a reader must know of the rules to read a verdict: it stands beside the verdict.
+
+use crate::result::{Certification, ProtocolOrigin, Remark};
+use crate::words::Text;
+
+/// Whose protocol it is, if it is not a shipped one, and parameters that are not at their default.
+pub fn beside_verdict(found: &Certification) -> Vec<Text> {
+    let own = |origin: &&ProtocolOrigin| matches!(origin, ProtocolOrigin::OwnProtocol { .. });
+    let own = found.protocol.origin.iter().filter(own).map(ProtocolOrigin::text);
+    own.chain(found.notes.iter().filter(|note| is_of_rules(note)).map(Remark::text)).collect()
+}
+
+/// Whether a remark is of the rules, and so stands beside the verdict.
+pub fn is_of_rules(note: &Remark) -> bool {
+    matches!(note, Remark::ParametersSet { .. })
+}
