@@ -12,8 +12,8 @@ protocol code-benchmark-reference "Comparison of simulation codes with a referen
 
 plausibility copies
   distinct  channels, sections, records
-  note      "Codes that solve one case well agree with the reference in many written digits: a copy is the same"
-            "in all of its channels."
+  note      "Codes that solve one case well agree with the reference in many written digits: a copy is the"
+            "same in all of its channels."
 
 quantity {force}_qst "{title}, quasi-static value: deviation from the reference"
   for each  force, title in (Y, Guiding force), (Q, Vertical wheel force)

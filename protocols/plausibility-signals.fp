@@ -63,5 +63,5 @@ plausibility copies "Copies of records"
 
 sections
   removed  at most 20 %
-  note     "The share is this text's own: with more sections removed, what is left may no longer stand for the"
-           "test."
+  note     "The share is this text's own: with more sections removed, what is left may no longer stand for"
+           "the test."

@@ -149,7 +149,7 @@ fn shared<'a>(rule: &str, distinct: Distinct, values: &'a [SectionValues]) -> Sh
             // What two simulations do differently may not act on a channel at all.
             (true, false, _) => {
                 let kinds = (a.which.kind, b.which.kind);
-                let whole = distinct.records && a.channel == b.channel && count >= shorter;
+                let whole = distinct.records && (&a.channel, a.whole) == (&b.channel, b.whole);
                 (distinct.sides || whole)
                     && kinds != (RecordKind::Simulation, RecordKind::Simulation)
             }

@@ -19,6 +19,8 @@ pub struct Print {
     pub which: WhichRecord,
     /// The record in words: `measurement run1`.
     pub record: String,
+    /// Hash of all samples.
+    pub whole: u64,
     /// Sorted, without duplicates. A file of values has them in binary form.
     #[serde(skip)]
     pub marks: Vec<u32>,
@@ -34,7 +36,8 @@ impl Print {
         let mut marks = marks(samples);
         marks.sort_unstable();
         marks.dedup();
-        Self { rule: rule.to_string(), channel: channel.to_string(), which, record, marks }
+        let whole = samples.iter().fold(0, |whole: u64, value| mixed(whole ^ hash_of(*value)));
+        Self { rule: rule.to_string(), channel: channel.to_string(), which, record, whole, marks }
     }
 }
 
