@@ -2,10 +2,9 @@
 
 mod about;
 mod again;
+mod deviations;
 mod opened;
 mod origin;
-
-use indexmap::IndexMap;
 
 use crate::check::plan::{DatumKind, Parameter, Plan, Scalar, SetBy};
 use crate::check::{self, Overrides, diff, family::Family};
@@ -14,14 +13,14 @@ use crate::data::hash::{Hasher, sha256};
 use crate::graph::{self, Graph};
 use crate::problem::{Problems, error};
 use crate::result::{
-    CampaignInfo, Certification, ChannelInfo, DataItem, Datum, FORMAT, FileHash, FilterInfo, Kind,
+    CampaignInfo, Certification, ChannelInfo, DataItem, FORMAT, FileHash, FilterInfo, Kind,
     OriginInfo, ParameterInfo, ProtocolFile, ProtocolInfo, Remark, THIS,
 };
 use crate::run::{self, Outcome, Progress, Settings};
 use crate::syntax::document::Block;
 
 pub use about::About;
-pub use again::{Rules, Setting, again};
+pub use again::{Rules, Setting, again, confirmations};
 pub use opened::{Opened, Set, overrides};
 pub use origin::taken_names;
 
@@ -99,20 +98,27 @@ pub fn certify<'a>(
 pub fn certification(compiled: &Compiled, about: &About, outcome: Outcome) -> Certification {
     let campaign = about.info(outcome.files);
     let judged = outcome.judged;
-    let mut notes = outcome.notes;
+    let protocol = protocol_info(compiled);
+    let values = &compiled.plan.values;
+    let mut notes: Vec<Remark> = values.not_counted.clone();
+    notes.extend(outcome.notes);
     notes.extend(
         campaign.origin.as_ref().map(|origin| Remark::Origin { says: origin.says.clone() }),
     );
+    let deviations = deviations::all(&compiled.plan, &protocol, &outcome.findings, &mut notes);
     Certification {
         fishplate: THIS.into(),
         format: FORMAT,
-        protocol: protocol_info(compiled),
         verdict_text: Kind::of(&judged.quantities).verdict_words(judged.verdict).into(),
         verdict: judged.verdict,
         own_word: judged.own_word,
         verdict_note: campaign.origin.as_ref().and_then(OriginInfo::note),
         campaign,
         reasons: judged.reasons,
+        provisional: values.provisional.clone(),
+        confirmed: values.confirmed.clone(),
+        draft: false,
+        deviations,
         verdicts: judged.verdicts,
         quantities: judged.quantities,
         sections: outcome.sections,
@@ -124,11 +130,8 @@ pub fn certification(compiled: &Compiled, about: &About, outcome: Outcome) -> Ce
         application: outcome.application,
         traces: outcome.traces,
         findings: outcome.findings,
-        notes: parameters_set(&compiled.plan)
-            .into_iter()
-            .chain(unconfirmed(&compiled.plan))
-            .chain(notes)
-            .collect(),
+        protocol,
+        notes,
     }
 }
 
@@ -220,31 +223,6 @@ fn channel_info(block: &Block) -> ChannelInfo {
         unit: block.field("in").map_or_else(String::new, |field| field.value.text.clone()),
         note: notes.join(" "),
     }
-}
-
-/// A note on parameters with values other than the default, since the verdict depends on them.
-fn parameters_set(plan: &Plan) -> Option<Remark> {
-    let set = |parameter: &&Parameter| {
-        parameter.set_by != SetBy::Default && parameter.value != parameter.default
-    };
-    let parameters: Vec<_> = plan.parameters.iter().filter(set).map(parameter_info).collect();
-    (!parameters.is_empty()).then_some(Remark::ParametersSet { parameters })
-}
-
-/// A note for each reason why numbers are to be confirmed, with these numbers.
-fn unconfirmed(plan: &Plan) -> Vec<Remark> {
-    let of_parameter = |parameter: &Parameter| {
-        Some((parameter.name.clone(), parameter.value.clone(), parameter.unconfirmed.clone()?))
-    };
-    let of_other = |(name, why): &(String, String)| (name.clone(), String::new(), why.clone());
-    let others = plan.unconfirmed.iter().map(of_other);
-    let mut by_reason: IndexMap<String, Vec<Datum>> = IndexMap::new();
-    for (name, value, why) in plan.parameters.iter().filter_map(of_parameter).chain(others) {
-        by_reason.entry(why).or_default().push(Datum { name, value, unit: None });
-    }
-    let standard = plan.source.is_some();
-    let one = |(why, values)| Remark::ToBeConfirmed { standard, values, why };
-    by_reason.into_iter().map(one).collect()
 }
 
 fn parameter_info(parameter: &Parameter) -> ParameterInfo {

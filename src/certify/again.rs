@@ -10,14 +10,14 @@ use super::{Compiled, compile};
 use crate::check::plan::SetBy;
 use crate::check::{Override, Overrides, family};
 use crate::problem::{Problem, Problems};
-use crate::result::ParameterInfo;
+use crate::result::{Confirmation, ConfirmedValue, ParameterInfo};
 use crate::source::Source;
 use crate::syntax::document::Text;
 
 /// Compiles a protocol from its files, in the order of [`family::Family::sources`].
 pub fn again(
     sources: &[Arc<Source>],
-    parameters: &[Setting],
+    (parameters, confirmed): (&[Setting], &[Confirmation]),
     problems: &mut Problems,
 ) -> Option<Compiled> {
     // Texts are asked for in the order in which they are carried.
@@ -33,7 +33,9 @@ pub fn again(
     if problems.any_error() {
         return None;
     }
-    compile(family, &overrides(parameters), problems)
+    let mut overrides = overrides(parameters);
+    overrides.confirmed = confirmed.to_vec();
+    compile(family, &overrides, problems)
 }
 
 fn overrides(parameters: &[Setting]) -> Overrides {
@@ -49,6 +51,19 @@ fn overrides(parameters: &[Setting]) -> Overrides {
         overrides.insert(parameter.name.clone(), Override { text, set_by });
     }
     overrides
+}
+
+/// Confirmations that count, as a campaign states them.
+pub fn confirmations(of: &[ConfirmedValue], edition: &Option<String>) -> Vec<Confirmation> {
+    let one = |ConfirmedValue { value, signed }: &ConfirmedValue| Confirmation {
+        name: value.name.clone(),
+        value: value.value.clone(),
+        unit: value.unit.clone(),
+        clause: value.clause.clone(),
+        edition: edition.clone(),
+        signed: signed.clone(),
+    };
+    of.iter().map(one).collect()
 }
 
 /// The value of a parameter, and what set it.
@@ -75,6 +90,9 @@ pub struct Rules {
     /// Name and text of each file; the protocol first.
     pub files: Vec<(String, String)>,
     pub parameters: Vec<Setting>,
+    /// Confirmations that count.
+    #[serde(default)]
+    pub confirmed: Vec<Confirmation>,
 }
 
 impl Rules {
@@ -89,6 +107,7 @@ impl Rules {
                 .map(super::parameter_info)
                 .map(Setting::of)
                 .collect(),
+            confirmed: confirmations(&compiled.plan.values.confirmed, &compiled.plan.edition),
         }
     }
 
@@ -98,6 +117,6 @@ impl Rules {
             Source::new(format!("{}/{name}", at + 1), text.clone())
         };
         let sources: Vec<Arc<Source>> = self.files.iter().enumerate().map(source).collect();
-        again(&sources, &self.parameters, problems)
+        again(&sources, (&self.parameters, &self.confirmed), problems)
     }
 }

@@ -3,10 +3,12 @@
 use super::{Compiled, certify};
 use crate::check::plan::SetBy;
 use crate::check::{Override, Overrides};
+use crate::data::campaign::Confirmed;
 use crate::data::{Campaign, Campaigns};
 use crate::problem::{Problem, Problems};
-use crate::result::Certification;
+use crate::result::confirmation::Signed;
 use crate::result::found::FoundSections;
+use crate::result::{Certification, Confirmation};
 use crate::run::{Progress, Settings};
 use crate::syntax::document::Text;
 
@@ -84,5 +86,12 @@ pub fn overrides(
     for (name, text) in set.iter().cloned() {
         overrides.insert(name, Override { text, set_by: SetBy::CommandLine });
     }
+    let all = campaigns.iter().flat_map(|campaign| &campaign.confirmed);
+    overrides.confirmed = all.cloned().map(confirmation).collect();
     Some(overrides)
+}
+
+fn confirmation(of: Confirmed) -> Confirmation {
+    let Confirmed { name, value, unit, clause, edition, by, date } = of;
+    Confirmation { name, value, unit, clause, edition, signed: Signed { by, date } }
 }

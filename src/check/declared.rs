@@ -10,8 +10,9 @@ use crate::syntax::phrase::Pick;
 /// Largest number of positions of a place: the wheels of a train of sixty vehicles. A signal at
 /// several places has the product of their numbers.
 const MOST_MEMBERS: usize = 500;
-/// Written as the default of a vehicle datum that the vehicle file may omit.
-const NOT_STATED: &str = "not stated";
+/// Written as the default of a vehicle datum that the vehicle file may omit, and of a parameter that
+/// has no value unless it is set.
+pub const NOT_STATED: &str = "not stated";
 
 impl Checker<'_> {
     /// The positions of a place and their aliases.
@@ -233,7 +234,7 @@ impl Checker<'_> {
             problem!(
                 "unknown-choice",
                 field,
-                "`{NOT_STATED}` can only be written for vehicle data"
+                "`{NOT_STATED}` can only be written for vehicle data and parameters"
             )
             .help("remove the line: without a default, an empty cell is a missing value"),
         )

@@ -179,7 +179,7 @@ impl Checker<'_> {
         scope.group.as_ref()?;
         if let Some(written) = self.names.estimates.get(path).cloned() {
             self.used_defines.insert(format!("estimate {path}"));
-            self.unconfirmed |= self.names.unconfirmed.contains_key(path);
+            self.unconfirmed |= self.values.open(path);
             let found =
                 self.inside("estimate", path, span, |checker| checker.expr(&written, scope));
             return Some(found);

@@ -71,7 +71,7 @@ impl Checker<'_> {
         let (statistic, estimate) = self.with_statistic(written.statistic, written.estimate);
         let written = Written { statistic, estimate, ..written };
         let dimension = common.unit.map(|(unit, _)| unit.dimension);
-        let unconfirmed = common.block.field("unconfirmed").is_some();
+        let unconfirmed = self.values.open(&common.block.own_name());
         let scope = self.scope_of(&written.scope);
         let mut limits = Vec::new();
         for (scope, zone) in self.zone_by_zone(scope) {

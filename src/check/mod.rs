@@ -7,6 +7,7 @@ mod cases;
 mod closed;
 mod compared;
 mod conditions;
+pub mod confirm;
 pub mod constant;
 mod declared;
 pub mod diff;
@@ -58,6 +59,7 @@ use std::collections::BTreeSet;
 use indexmap::IndexMap;
 
 use crate::problem::{Problem, Problems, error, problem};
+use crate::result::{Confirmation, StatedValues};
 use crate::source::{Span, Spanned};
 use crate::syntax::document::{Block, Document, Field, Text};
 use crate::syntax::from_pest;
@@ -75,8 +77,38 @@ pub struct Override {
     pub set_by: SetBy,
 }
 
-/// Parameters set from outside, by name.
-pub type Overrides = IndexMap<String, Override>;
+/// Parameters set from outside, by name, and the values that were confirmed.
+#[derive(Clone, Debug, Default)]
+pub struct Overrides {
+    parameters: IndexMap<String, Override>,
+    pub confirmed: Vec<Confirmation>,
+}
+
+impl Overrides {
+    pub fn new() -> Self {
+        Self::default()
+    }
+}
+
+impl std::ops::Deref for Overrides {
+    type Target = IndexMap<String, Override>;
+
+    fn deref(&self) -> &Self::Target {
+        &self.parameters
+    }
+}
+
+impl std::ops::DerefMut for Overrides {
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        &mut self.parameters
+    }
+}
+
+impl FromIterator<(String, Override)> for Overrides {
+    fn from_iter<T: IntoIterator<Item = (String, Override)>>(all: T) -> Self {
+        Self { parameters: all.into_iter().collect(), confirmed: Vec::new() }
+    }
+}
 
 /// Largest depth of nested expressions, definitions and signals together. The stack is large enough
 /// for it.
@@ -105,7 +137,9 @@ struct Checker<'a> {
     /// Conditions that hold wherever the present expression is evaluated.
     assumed: Vec<Expr>,
     in_quantity: bool,
-    /// Whether what was looked at since this was last put to false has a number that is to be
+    /// Values that are to be confirmed.
+    values: StatedValues,
+    /// Whether what was looked at since this was last put to false has a number that is not
     /// confirmed.
     unconfirmed: bool,
     /// Whether records have a time.
@@ -172,6 +206,7 @@ pub fn check(
         used_defines: BTreeSet::new(),
         assumed: Vec::new(),
         in_quantity: false,
+        values: confirm::values(&document.blocks, overrides),
         unconfirmed: false,
         has_time: false,
         partial: false,
@@ -383,24 +418,14 @@ impl Checker<'_> {
                 value: found.value_words.clone(),
                 default: found.default_words.clone(),
                 set_by: found.set_by,
-                unconfirmed: found.unconfirmed.clone(),
+                stated: found.value.is_some(),
+                unconfirmed: self.values.why(name),
                 choices: if let plan::Type::Word(choices) = &found.ty {
                     choices.clone()
                 } else {
                     Vec::new()
                 },
             })
-            .collect();
-        let why = |block: &Block| {
-            Some((block.own_name(), block.field("unconfirmed")?.value.text.clone()))
-        };
-        let of_zones = of("zone").filter_map(why).map(|(name, why)| (format!("zone {name}"), why));
-        let others = of("quantity").filter_map(why).chain(of_zones);
-        let unconfirmed = names
-            .unconfirmed
-            .iter()
-            .map(|(name, why)| (name.clone(), why.clone()))
-            .chain(others)
             .collect();
         Some(Plan {
             name: head.own_name(),
@@ -409,10 +434,14 @@ impl Checker<'_> {
             source: head.text("source"),
             scope: head.text("scope"),
             notes: head.notes(),
+            leaves_out: head
+                .fields_named("leaves out")
+                .map(|field| field.value.text.clone())
+                .collect(),
             axis: self.axis.clone()?,
             time,
             parameters,
-            unconfirmed,
+            values: self.values.clone(),
             vehicle: self.names.vehicle.clone(),
             columns: self.names.columns.clone(),
             campaigns: self.campaigns.clone(),
@@ -437,7 +466,7 @@ impl Checker<'_> {
     }
 
     fn unknown_overrides(&mut self, head: &Block) {
-        for (name, given) in self.overrides {
+        for (name, given) in self.overrides.iter() {
             if !self.names.parameter_blocks.contains_key(name) {
                 let problem = problem!(
                     "unknown-parameter",

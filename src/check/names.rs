@@ -13,13 +13,12 @@ use crate::units::SYMBOLS;
 #[derive(Clone, Debug)]
 pub struct ParameterDef {
     pub title: String,
-    pub value: Scalar,
+    /// `None`: it has no value unless it is set.
+    pub value: Option<Scalar>,
     pub ty: Type,
     pub value_words: String,
     pub default_words: String,
     pub set_by: SetBy,
-    /// Why its value is to be confirmed.
-    pub unconfirmed: Option<String>,
     /// The place and the positions selected, where the parameter is a selection.
     pub selects: Option<(String, Vec<String>)>,
 }
@@ -59,8 +58,6 @@ pub struct Names {
     /// Channels, then the signals that are computed from them.
     pub signals: IndexMap<String, Signal>,
     pub defines: IndexMap<String, Phrase>,
-    /// Definitions with a number that is to be confirmed, and why.
-    pub unconfirmed: IndexMap<String, String>,
     pub estimates: IndexMap<String, Phrase>,
     /// Blocks of the filters.
     pub filters: IndexMap<String, Block>,
@@ -123,8 +120,6 @@ impl Checker<'_> {
     /// A definition or an estimate.
     fn expression_named(&mut self, kind: &str, name: &str, block: &Block) -> Option<()> {
         let is = self.required(block, "is").and_then(|field| self.written(field))?;
-        let why = block.text("unconfirmed");
-        self.names.unconfirmed.extend(why.map(|why| (name.to_string(), why)));
         let known = match kind {
             "define" => &mut self.names.defines,
             _ => &mut self.names.estimates,

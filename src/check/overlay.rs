@@ -28,9 +28,10 @@ pub fn overlay(parent: &mut Block, variant: &Block) {
         // And a limit and the reason why there is none.
         "reported" => says("limit"),
         "limit" => says("reported"),
-        // A number of one's own is not the one that was to be confirmed.
+        // A number of one's own with its source is not the one that was to be confirmed.
         "unconfirmed" => {
-            says("default") || says("is") || parent.kind.text == "zone" && says("where")
+            let own = says("default") || says("is") || parent.kind.text == "zone" && says("where");
+            own && (says("source") || says("clause"))
         }
         _ => false,
     };

@@ -2,6 +2,7 @@
 //! only.
 
 use super::Override;
+use super::declared::NOT_STATED;
 use super::evaluate::words;
 use super::names::ParameterDef;
 use super::prelude::*;
@@ -17,7 +18,7 @@ impl Checker<'_> {
             self.names.parameters.insert(name.to_string(), found);
         }
         let found = self.names.parameters.get(name)?.clone();
-        self.unconfirmed |= found.unconfirmed.is_some();
+        self.unconfirmed |= self.values.open(name);
         Some(found)
     }
 
@@ -30,9 +31,20 @@ impl Checker<'_> {
             Some(Override { text, set_by }) => (text.clone(), *set_by),
             None => (default.value.clone(), SetBy::Default),
         };
-        // Who sets a value answers for it: the protocol says nothing about that number.
-        let unconfirmed = block.text("unconfirmed").filter(|_| set_by == SetBy::Default);
         let mut selects = None;
+        if default_words == NOT_STATED && given.is_none() {
+            let ty = self.type_not_stated(name, block, default)?;
+            let (value_words, value) = (default_words.clone(), None);
+            return Some(ParameterDef {
+                title,
+                value,
+                ty,
+                value_words,
+                default_words,
+                set_by,
+                selects,
+            });
+        }
         let (value, ty) = match (block.field("at"), block.field("one of")) {
             (Some(place), _) => {
                 let selected = self.selection(name, place, &default.value, &source)?;
@@ -60,14 +72,32 @@ impl Checker<'_> {
         let value_words = normalised(&source.text);
         Some(ParameterDef {
             title,
-            value,
+            value: Some(value),
             ty,
             value_words,
             default_words,
             set_by,
-            unconfirmed,
             selects,
         })
+    }
+
+    /// What a parameter is that has no value unless it is set: a number as its range.
+    fn type_not_stated(&mut self, name: &str, block: &Block, default: &Field) -> Option<Type> {
+        let choice = block.field("one of").or_else(|| block.field("at"));
+        if let Some(choice) = choice {
+            let says = "only a number can have `default not stated`";
+            return self
+                .refuse(problem!("unknown-choice", default, "{says}").also(choice, "a choice"));
+        }
+        let Some(range) = block.field("range") else {
+            let says = format!("`{name}` has no default and no range, so its unit is not known");
+            let problem = problem!("missing-field", default, "{says}");
+            return self.refuse(problem.help("add a line `range 0.1 mrad to 10 mrad`"));
+        };
+        let (low, _) = from_pest::range(&range.value, self.problems)?;
+        let (_, dimension) = self.constant_phrase(&low)?;
+        self.range_ends(name, dimension, range, None)?;
+        Some(Type::Number(dimension))
     }
 
     fn choice(
@@ -139,10 +169,21 @@ impl Checker<'_> {
         default: &Text,
         given: Option<&Text>,
     ) -> Option<(Scalar, Type)> {
-        let found = self.constant(default);
         let set = given.map(|given| (given, self.constant(given)));
+        let stated = normalised(&default.text) != NOT_STATED;
+        // Without a default, the range says what the number is, and the set value stands for it.
+        let found = match (stated, block.field("default"), &set) {
+            (true, ..) => self.constant(default),
+            (false, Some(field), Some((_, set))) => {
+                match (self.type_not_stated(name, block, field)?, set) {
+                    (Type::Number(dimension), Some((value, _))) => Some((*value, dimension)),
+                    _ => None,
+                }
+            }
+            _ => None,
+        };
         let (default_value, dimension) = found?;
-        if let Some(range) = block.field("range") {
+        if let Some(range) = block.field("range").filter(|_| stated) {
             self.within_range(name, default_value, dimension, default, range);
         }
         let as_default = Some((Scalar::Number(default_value), Type::Number(dimension)));
@@ -150,7 +191,7 @@ impl Checker<'_> {
         let (value, found) = set?;
         if found != dimension {
             let default_words = default.text.trim();
-            let help = (found == Dimension::ONE)
+            let help = (found == Dimension::ONE && stated)
                 .then(|| format!("write its unit, as its default does: `{default_words}`"));
             return self.refuse(
                 problem!(

@@ -36,7 +36,7 @@ impl Checker<'_> {
     }
 
     fn reports_of(&mut self, block: &Block, of: Of) -> Option<Vec<Report>> {
-        let unconfirmed = block.field("unconfirmed").is_some();
+        let unconfirmed = self.values.open(&block.own_name());
         let mut reports: Vec<Report> = Vec::new();
         let mut seen: Vec<(Written, &Field)> = Vec::new();
         let mut ok = true;

@@ -202,10 +202,14 @@ impl Checker<'_> {
         }
         if self.names.parameter_blocks.contains_key(path) {
             let parameter = self.parameter(path, span)?;
-            return expr(Kind::Constant(parameter.value), parameter.ty);
+            let kind = match parameter.value {
+                Some(value) => Kind::Constant(value),
+                None => Kind::NotStated(path.to_string()),
+            };
+            return expr(kind, parameter.ty);
         }
         if self.names.defines.contains_key(path) {
-            self.unconfirmed |= self.names.unconfirmed.contains_key(path);
+            self.unconfirmed |= self.values.open(path);
             return self.defined(path, span, scope);
         }
         if matches!(path, "true" | "false") {
@@ -445,7 +449,7 @@ impl Checker<'_> {
             return Some(word.to_string());
         }
         match self.parameter(word, span)?.value {
-            Scalar::Word(choice) => Some(choice),
+            Some(Scalar::Word(choice)) => Some(choice),
             _ => Some(word.to_string()),
         }
     }

@@ -33,8 +33,8 @@ impl Checker<'_> {
     pub fn zone(&mut self, block: &Block) -> Option<Zone> {
         let (condition, condition_words) = match block.field("where") {
             Some(field) => {
-                let unconfirmed =
-                    if block.field("unconfirmed").is_some() { self.to_be_confirmed() } else { "" };
+                let open = self.values.open(&format!("zone {}", block.own_name()));
+                let unconfirmed = if open { self.to_be_confirmed() } else { "" };
                 (Some(self.section_condition(field)?), normalised(&field.value.text) + unconfirmed)
             }
             None => (None, String::new()),
@@ -76,6 +76,7 @@ impl Checker<'_> {
         self.inputs_of_one_record(&scope.inputs)?;
         let unless = if_written(block.field("unless").map(|field| self.section_condition(field)))?;
         let otherwise = self.on_fault(block, "otherwise", &["not used", "stop", "note"])?;
+        let unchecked = self.on_fault(block, "unchecked", &["not assessable", "note"])?;
         Some(Check {
             name: block.own_name(),
             title: block.title_in_words(),
@@ -84,6 +85,7 @@ impl Checker<'_> {
             unless,
             words: normalised(&field.value.text),
             otherwise,
+            required: otherwise != OnFault::Note && unchecked != OnFault::Note,
             span: block.place(),
         })
     }

@@ -95,6 +95,9 @@ impl<V: Values> Values for Watched<'_, V> {
 pub fn leaf(kind: &Kind, values: &dyn Values) -> Result<Scalar, Reason> {
     match kind {
         Kind::Constant(value) => Ok(value.clone()),
+        Kind::NotStated(parameter) => {
+            Err(Reason::ParameterNotStated { parameter: parameter.clone() })
+        }
         Kind::Vehicle(index) => values.vehicle(*index),
         Kind::Column(index) => values.column(*index),
         Kind::Start => values.extent().map(|(start, _)| Scalar::Number(start)),

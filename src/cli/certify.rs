@@ -34,6 +34,6 @@ impl Certify {
         let found = console.with_progress(opened.campaigns().sections(), |progress| {
             opened.certify(self.report.settings(), progress)
         })?;
-        self.report.write(&found, key.as_ref(), console)
+        self.report.write(found, key.as_ref(), console)
     }
 }

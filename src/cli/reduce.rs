@@ -111,7 +111,7 @@ impl Judge {
         let joined = console.sound(joined, &problems)?;
         let key = self.report.key()?;
         let found = joined.certification(self.report.settings())?;
-        self.report.write(&found, key.as_ref(), console)
+        self.report.write(found, key.as_ref(), console)
     }
 }
 

@@ -27,6 +27,9 @@ pub struct Report {
     /// Number of distance plots.
     #[arg(long, default_value_t = PLOTS)]
     plots: usize,
+    /// Mark every page as a draft, and end with exit code 1, while values are not confirmed.
+    #[arg(long = "final")]
+    is_final: bool,
     /// Sign report.pdf and statement.json with this secret key; see `fishplate sign`.
     #[arg(long, value_name = "KEY")]
     sign: Option<PathBuf>,
@@ -62,11 +65,19 @@ impl Report {
     ///
     /// # Errors
     /// The report cannot be made, or a file not be written.
-    pub fn write(&self, found: &Certification, key: Option<&SecretKey>, console: &Console) -> Done {
+    pub fn write(
+        &self,
+        mut found: Certification,
+        key: Option<&SecretKey>,
+        console: &Console,
+    ) -> Done {
+        found.draft = self.is_final && !found.provisional.is_empty();
+        let found = &found;
         let files = self.files(found, key).map_err(Ended::unfinished)?;
         console.write_all(SetKind::Report, &self.out, &files)?;
         console.written(&summary(found, console), &self.out);
-        Ok(if found.verdict == Verdict::Validated { Exit::Done } else { Exit::DoesNotHold })
+        let holds = found.verdict == Verdict::Validated && !found.draft;
+        Ok(if holds { Exit::Done } else { Exit::DoesNotHold })
     }
 
     /// All files of the report, by path relative to the output folder.
@@ -110,6 +121,15 @@ fn summary(found: &Certification, console: &Console) -> String {
     }
     for note in found.notes.iter().filter(|note| !rules::is_of_rules(note)) {
         out += &format!("note: {}\n", note.text());
+    }
+    for deviation in &found.deviations {
+        out += &format!("deviation: {}\n", deviation.what.text());
+    }
+    for value in &found.provisional {
+        out += &format!("not confirmed: {} = {}\n", value.name, value.in_words());
+    }
+    if found.draft {
+        out += "the report is marked as a draft: campaign.yaml confirms values below `confirmed`\n";
     }
     let holds = found.verdict == Verdict::Validated;
     let overall = found.verdicts.iter().find(|verdict| verdict.overall);

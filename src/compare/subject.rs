@@ -185,11 +185,13 @@ fn parameters(family: &Family) -> impl Iterator<Item = &str> {
 /// Those that a protocol has.
 fn of_protocol(family: &Family, overrides: &Overrides) -> Overrides {
     let has = |name: &String| parameters(family).any(|known| known == name);
-    overrides
+    let mut own: Overrides = overrides
         .iter()
         .filter(|(name, _)| has(name))
         .map(|(name, set)| (name.clone(), set.clone()))
-        .collect()
+        .collect();
+    own.confirmed.clone_from(&overrides.confirmed);
+    own
 }
 
 /// The protocol with one change.

@@ -3,6 +3,7 @@
 //! Only the keys of the folder layout are defined here; all others are facts, which are printed or
 //! requested by name.
 
+mod confirmed;
 mod facts;
 mod files;
 mod layout;
@@ -14,6 +15,7 @@ mod runs;
 use std::path::Path;
 use std::sync::Arc;
 
+pub use confirmed::Confirmed;
 pub use facts::Fact;
 pub use files::Inputs;
 pub use layout::POINT_KEY;
@@ -65,6 +67,8 @@ pub struct Campaign {
     pub tree: Node,
     pub facts: Vec<Fact>,
     pub parameters: Vec<Parameter>,
+    /// Values of the protocol that were confirmed.
+    pub confirmed: Vec<Confirmed>,
     /// Contents of the block `report`.
     pub report: Vec<Stated>,
     /// Name or path of the default protocol.
@@ -216,6 +220,7 @@ impl Campaign {
             name,
             facts: facts::facts(&tree),
             parameters: layout.parameters.unwrap_or_default(),
+            confirmed: layout.confirmed.unwrap_or_default(),
             report: report.unwrap_or_default().0,
             protocol: layout.protocol,
             origin: layout.origin,

@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use super::pdf::Attachments;
 use super::{before, signature, statement};
-use crate::certify::{Compiled, Setting, again};
+use crate::certify::{Compiled, Setting, again, confirmations};
 use crate::check::family::Family;
 use crate::data::hash::sha256;
 use crate::data::text::{decode, read_bytes};
@@ -251,6 +251,8 @@ impl Carried {
     pub fn compiled(&self, sources: &[Arc<Source>], problems: &mut Problems) -> Option<Compiled> {
         let settings: Vec<Setting> =
             self.results.protocol.parameters.iter().cloned().map(Setting::of).collect();
-        again(sources, &settings, problems)
+        let protocol = &self.results.protocol;
+        let confirmed = confirmations(&self.results.confirmed, &protocol.edition);
+        again(sources, (&settings, &confirmed), problems)
     }
 }

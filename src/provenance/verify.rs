@@ -15,7 +15,8 @@ use crate::data::fingerprint::fingerprint;
 use crate::data::hash::sha256;
 use crate::data::{Campaign, Campaigns};
 use crate::problem::{Problem, Problems};
-use crate::result::{self, Certification, Kind, ProtocolOrigin, THIS};
+use crate::result::confirmation::Signed;
+use crate::result::{self, Certification, ConfirmedValue, Kind, ProtocolOrigin, THIS};
 use crate::run::Settings;
 use crate::run::find;
 use crate::run::replay::replay;
@@ -175,6 +176,7 @@ fn statistics(carried: &Carried, compiled: &Compiled) -> Check {
         verdict: judged.verdict,
         own_word: judged.own_word,
         reasons: judged.reasons,
+        provisional: compiled.plan.values.provisional.clone(),
         verdicts: judged.verdicts,
         quantities: judged.quantities,
         zones: judged.zones,
@@ -182,9 +184,11 @@ fn statistics(carried: &Carried, compiled: &Compiled) -> Check {
         ..carried.results.clone()
     };
     let again = carried.comparable(&again);
-    for key in
-        ["verdict", "verdict_word", "reasons", "verdicts", "quantities", "zones", "application"]
-    {
+    // Reports of the first versions say nothing of values that are to be confirmed.
+    let provisional = carried.value.get("provisional").map(|_| "provisional");
+    let keys =
+        ["verdict", "verdict_word", "reasons", "verdicts", "quantities", "zones", "application"];
+    for key in keys.into_iter().chain(provisional) {
         let found = compare(value(key), again.get(key).unwrap_or(&Value::Null), key);
         numbers += found.numbers;
         details.extend(found.differences.iter().map(|one| told(one, "follows from the values")));
@@ -243,6 +247,7 @@ pub fn against(carried: &Carried, compiled: Option<&Compiled>, again: Again<'_>)
             Err(problem) => lost.push(format!("not readable: {}: {}", file.path, problem.says)),
         }
     }
+    lost.extend(opened.iter().flat_map(|campaigns| not_confirmed(carried, campaigns)));
     let certified = compiled.map(|compiled| -> Result<Certification, Problems> {
         let mut campaigns = opened.as_ref().map_err(Clone::clone)?.clone();
         let found = find::in_all(&compiled.plan, &compiled.graph, &mut campaigns)?;
@@ -252,7 +257,7 @@ pub fn against(carried: &Carried, compiled: Option<&Compiled>, again: Again<'_>)
             Settings { traces: again.plots },
             again.progress,
         )?;
-        Ok(Certification { found, ..certified })
+        Ok(Certification { found, draft: carried.results.draft, ..certified })
     });
     if let Some(Ok(found)) = &certified {
         let known =
@@ -293,6 +298,19 @@ pub fn against(carried: &Carried, compiled: Option<&Compiled>, again: Again<'_>)
         Some(Ok(found)) => checks.extend(compared(carried, &found, again, same)),
     }
     checks
+}
+
+/// Values that the report calls confirmed and that the campaigns do not confirm.
+fn not_confirmed(carried: &Carried, campaigns: &[Campaign]) -> Vec<String> {
+    let stated = |value: &&ConfirmedValue| {
+        let Signed { by, date } = &value.signed;
+        campaigns
+            .iter()
+            .flat_map(|campaign| &campaign.confirmed)
+            .any(|one| (&one.name, &one.by, &one.date) == (&value.value.name, by, date))
+    };
+    let all = carried.results.confirmed.iter().filter(|value| !stated(value));
+    all.map(|one| format!("not confirmed by the campaign: {}", one.value.name)).collect()
 }
 
 /// The campaigns of the report in its order.

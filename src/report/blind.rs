@@ -21,6 +21,7 @@ pub fn document(title: &str, blind: &Blind) -> Document {
         title: title.to_owned(),
         program: PROGRAM,
         issued: None,
+        draft: false,
         cover: None,
         chapters: vec![
             scores(blind),

@@ -3,7 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Certification, QuantityResult, Verdict};
+use super::{Certification, QuantityResult, Remark, Verdict};
+use crate::words;
 
 /// What a protocol is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -108,9 +109,18 @@ impl Certification {
 
     /// The same with its note: `validated, with a simulation fitted to the same measurements`
     pub fn verdict_in_words(&self) -> String {
-        let note =
-            self.verdict_note.as_ref().map_or(String::new(), |note| format!(", {}", note.text()));
+        let note = self.beside_the_verdict().map_or(String::new(), |note| format!(", {note}"));
         format!("{}{note}", self.verdict_word())
+    }
+
+    /// How many values are not confirmed, and what the simulation was fitted to.
+    pub fn beside_the_verdict(&self) -> Option<String> {
+        let values = self.provisional.len();
+        let provisional = (values > 0 && self.verdict != Verdict::NotAssessable)
+            .then(|| words::text(&Remark::Provisional { values }).into());
+        let note = self.verdict_note.as_ref().map(|note| note.text().into());
+        let both: Vec<String> = provisional.into_iter().chain(note).collect();
+        (!both.is_empty()).then(|| both.join(", "))
     }
 
     /// Sides of which records are in the quantities: simulated, measured.

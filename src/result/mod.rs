@@ -5,6 +5,7 @@
 
 pub mod blind;
 pub mod comparison;
+pub mod confirmation;
 pub mod diagnosis;
 mod direction;
 pub mod domain;
@@ -30,6 +31,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::words;
 
+pub use confirmation::{Confirmation, ConfirmedValue, StatedValue, StatedValues, Unmatched};
 pub use direction::Direction;
 pub use domain::{CoordinateRange, DomainResult, DomainSection, WantedPoint};
 pub use finding::{Consequence, Finding, Occurrence};
@@ -86,6 +88,18 @@ pub struct Certification {
     #[serde(flatten, with = "told::reasons")]
     #[schemars(with = "told::Reasons<Reason>")]
     pub reasons: Vec<Reason>,
+    /// Values that the verdict rests on and that nobody confirmed.
+    #[serde(default)]
+    pub provisional: Vec<StatedValue>,
+    /// Those that are confirmed.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub confirmed: Vec<ConfirmedValue>,
+    /// Every page is marked: it was to be final, and values are not confirmed.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub draft: bool,
+    /// What was done differently than the standard and the protocol say.
+    #[serde(default)]
+    pub deviations: Vec<DeviationFrom>,
     /// The verdicts with a name.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub verdicts: Vec<VerdictResult>,
@@ -195,6 +209,23 @@ impl ProtocolFile {
     }
 }
 
+/// Something that was done differently than the standard or the protocol says.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct DeviationFrom {
+    pub from: Departed,
+    #[serde(flatten, with = "told::says")]
+    #[schemars(with = "told::Says<Remark>")]
+    pub what: Remark,
+}
+
+/// From what a deviation is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Departed {
+    Standard,
+    Protocol,
+}
+
 /// A rule that differs from the parent.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Deviation {
@@ -215,7 +246,7 @@ pub struct ParameterInfo {
     pub default: String,
     /// `default`, `campaign` or `command line`.
     pub set_by: String,
-    /// Why the value is to be confirmed.
+    /// Why its default is to be confirmed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unconfirmed: Option<String>,
 }

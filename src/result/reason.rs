@@ -83,6 +83,13 @@ pub enum Reason {
     VehicleDataNotStated {
         key: String,
     },
+    ParameterNotStated {
+        parameter: String,
+    },
+    /// Parameters without which nothing can be assessed.
+    ParametersNotStated {
+        parameters: Vec<String>,
+    },
 
     // The table of sections and the data of runs.
     NoColumn {
@@ -235,6 +242,12 @@ pub enum Reason {
     },
     NotChecked {
         reason: Box<Self>,
+    },
+    /// What the protocol requires, in sections that are used.
+    RequiredNotChecked {
+        check: String,
+        reason: Box<Self>,
+        sections: Sections,
     },
     NoTrackRecord,
     RecordsNotEvaluated,
@@ -501,7 +514,7 @@ pub enum FindingData {
     },
     /// A record is not as an import wrote it; why, if the campaign says so.
     RecordChanged { file: String, imported: bool, reason: Option<String> },
-    /// A requirement was not checked for want of a vehicle datum.
+    /// As earlier versions told a requirement that could not be checked.
     CheckWithoutVehicleData { key: String, check: String, sections: Sections },
     /// Rules were not checked for want of a column.
     RulesWithoutColumn { column: String, sections: Sections, rules: Vec<String> },

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::parts::{Datum, Sections};
-use super::{ParameterInfo, Reason, StatisticName};
+use super::{ParameterInfo, Reason, StatisticName, Unmatched};
 use crate::words::{self, Text};
 
 /// What a result remarks without a change of its verdict.
@@ -17,14 +17,37 @@ pub enum Remark {
     },
 
     // Certifications.
+    /// What the protocol does not do of its standard.
+    LeavesOut {
+        says: String,
+    },
+    /// A record that was changed after its import.
+    RecordEdited {
+        file: String,
+        reason: String,
+    },
+    /// Rules that differ from the parent protocol.
+    RulesChanged {
+        rules: usize,
+    },
     ParametersSet {
         parameters: Vec<ParameterInfo>,
     },
-    /// Values that are to be confirmed for the same reason, against the standard if there is one.
+    /// Beside a verdict: how many values nobody confirmed.
+    Provisional {
+        values: usize,
+    },
+    /// As earlier versions told values that are to be confirmed.
     ToBeConfirmed {
         standard: bool,
         values: Vec<Datum>,
         why: String,
+    },
+    /// A confirmation of a value in `campaign.yaml` that does not count.
+    ConfirmationNotCounted {
+        name: String,
+        by: String,
+        why: Unmatched,
     },
     Origin {
         says: String,

@@ -133,12 +133,10 @@ mod tests {
     use serde::de::DeserializeOwned;
 
     use super::*;
-    use crate::result::{
-        Channels, FindingData, ProtocolOrigin, Reason, Remark, Sections, VehicleValue,
-    };
+    use crate::result::{Channels, FindingData, ProtocolOrigin, Reason, Remark, Sections, Unmatched, VehicleValue};
 
     /// A value for a field, whatever its type: the first that fits.
-    const FITS: [&str; 13] = [
+    const FITS: [&str; 14] = [
         "3",
         "\"word\"",
         "true",
@@ -152,6 +150,7 @@ mod tests {
         "[{\"name\": \"a\", \"value\": \"1\", \"unit\": \"m\", \"by\": -1.5, \"verdict\": \"a\", \"word\": \"b\", \"zone\": \"1\", \"used\": 2, \"section\": \"S\", \"reason\": \"c\", \"title\": \"a\", \"default\": \"2\", \"set_by\": \"campaign\", \"records\": \"a\", \"campaign\": \"b\", \"offset\": 1.5, \"channels\": [\"Y\"]}]",
         "[{\"vehicle\": \"a\", \"value\": {\"code\": \"si\", \"value\": 2.0}}]",
         "[]",
+        "{\"code\": \"nothing-to-confirm\"}",
     ];
 
     /// Words in backticks of an error: the variants, or the field that is missing.
@@ -195,6 +194,7 @@ mod tests {
         all.extend(examples::<FindingData>());
         all.extend(examples::<Remark>());
         all.extend(examples::<ProtocolOrigin>());
+        all.extend(examples::<Unmatched>());
         all.extend(examples::<VehicleValue>());
         all.push(serde_json::to_value(Sections::of(&["S01"], 2)).expect("data"));
         all.push(serde_json::to_value(Channels::of(&["Y"])).expect("data"));

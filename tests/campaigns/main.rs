@@ -17,6 +17,7 @@ mod score;
 
 mod campaign_faults;
 mod campaign_vehicle;
+mod confirmed;
 mod data;
 mod find;
 mod foreign;

@@ -133,6 +133,10 @@ pub fn certification() -> Certification {
         verdict: Verdict::NotValidated,
         own_word: None,
         verdict_note: None,
+        provisional: Vec::new(),
+        confirmed: Vec::new(),
+        draft: false,
+        deviations: Vec::new(),
         verdicts: Vec::new(),
         reasons: vec![
             Reason::said("ÿ*_max: standard deviation above its limit"),

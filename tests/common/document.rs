@@ -62,6 +62,7 @@ pub fn of_part(part: &Topic) -> Document {
         title: part.title.clone(),
         program: "",
         issued: None,
+        draft: false,
         cover: None,
         chapters: vec![fishplate::report::document::Chapter::new("part", "Part", blocks)],
     }

@@ -7,7 +7,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::common::campaign::{certified, copy, replace};
-use fishplate::result::{Certification, QuantityResult, StatisticResult};
+use fishplate::result::{Certification, QuantityResult, StatisticResult, Verdict};
 use serde_json::Value;
 
 /// Relative; rounding apart, both sides do the same arithmetic.
@@ -253,8 +253,15 @@ fn sprague_geers_example() {
 
 #[test]
 fn sway_example() {
+    // The protocol has no limits of its own.
+    const SWAY: [&str; 2] = ["largest_error=1 mrad", "mean_error=0.5 mrad"];
+    let without = certified(Path::new("examples/sway"), "stationary-sway", &[]).expect("a result");
+    assert_eq!(without.verdict, Verdict::NotAssessable);
+    let reason = without.reasons[0].text().to_string();
+    assert!(reason.contains("`largest_error`, `mean_error`"), "{reason}");
+
     let expected = expected(Path::new("tests/cases/sway/expected.json"));
-    let found = certified(Path::new("examples/sway"), "stationary-sway", &[])
+    let found = certified(Path::new("examples/sway"), "stationary-sway", &SWAY)
         .unwrap_or_else(|problems| panic!("{}", problems.render(false)));
     for value in expected["values"].as_array().expect("a list") {
         let text = |key: &str| value[key].as_str().expect("text");

@@ -17,7 +17,8 @@ use fishplate::check::{self, Override, Overrides};
 use fishplate::graph;
 use fishplate::library;
 use fishplate::problem::{Problem, Problems, Severity};
-use fishplate::result::Direction;
+use fishplate::result::confirmation::Signed;
+use fishplate::result::{Confirmation, Direction, StatedValue};
 use fishplate::source::Source;
 use fishplate::syntax::document::Text;
 use fishplate::syntax::{self, print_text, print_yaml};
@@ -677,25 +678,85 @@ fn a_number_to_be_confirmed_says_so() {
             .chain(&of("Q_max"))
             .map(|limit| limit.words.ends_with(MARK))
             .collect::<Vec<_>>();
-        (
-            marked,
-            plan.parameters.iter().filter(|parameter| parameter.unconfirmed.is_some()).count(),
-            plan.unconfirmed,
-        )
+        (marked, plan.values.provisional)
     };
-    let others = vec![
-        ("higher".to_string(), "From memory.".to_string()),
-        ("Q_max".to_string(), "By eye.".to_string()),
-    ];
+    let value =
+        |name: &str, title: &str, (value, unit): (&str, Option<&str>), why: Option<&str>| {
+            StatedValue {
+                name: name.into(),
+                title: title.into(),
+                value: value.into(),
+                unit: unit.map(str::to_string),
+                clause: None,
+                why: why.map(str::to_string),
+            }
+        };
+    let highest = |number: &str, why| value("highest", "Highest", (number, Some("kN")), why);
+    let higher = value("higher", "Higher", ("6", Some("kN")), Some("From memory."));
+    let of_plan = |found: Vec<StatedValue>| -> Vec<String> {
+        found.into_iter().map(|one| format!("{} {:?}", one.in_words(), one.why)).collect()
+    };
+    let first_two = |found: (Vec<bool>, Vec<StatedValue>)| {
+        assert!(found.1.iter().any(|one| one.name == "Q_max"));
+        let own = found.1.into_iter().filter(|one| one.name != "Q_max").collect();
+        (found.0, of_plan(own))
+    };
     // Y_max: std, mean, reached, peak; Q_max: the parent's std, mean.
     assert_eq!(
-        words(TEXT, &Overrides::new()),
-        (vec![true, true, false, true, true, true], 1, others.clone())
+        first_two(words(TEXT, &Overrides::new())),
+        (
+            vec![true, true, false, true, true, true],
+            of_plan(vec![highest("4", Some("From memory.")), higher.clone()])
+        )
     );
+    // A value that is set is an own value, which is to be confirmed as well.
     assert_eq!(
-        words(TEXT, &set("highest", "5 kN")),
-        (vec![false, false, false, true, true, true], 0, others)
+        first_two(words(TEXT, &set("highest", "5 kN"))),
+        (
+            vec![true, true, false, true, true, true],
+            of_plan(vec![highest("5", None), higher.clone()])
+        )
     );
+    // Confirmed for another value or edition: not; for this one, also in another unit: the words
+    // go.
+    let edition = "EN 14363:2016, Annex T (method of the DynoTRAIN project)";
+    let confirmed = |value: &str, unit: &str, edition: &str| {
+        let mut overrides = Overrides::new();
+        overrides.confirmed.push(Confirmation {
+            name: "highest".into(),
+            value: value.into(),
+            unit: Some(unit.into()),
+            clause: None,
+            edition: Some(edition.into()),
+            signed: Signed { by: "test".into(), date: "2026-01-01".into() },
+        });
+        words(TEXT, &overrides).0
+    };
+    let (open, done) =
+        (vec![true, true, false, true, true, true], vec![false, false, false, true, true, true]);
+    assert_eq!(confirmed("5", "kN", edition), open);
+    assert_eq!(confirmed("4", "kN", "another"), open);
+    assert_eq!(confirmed("4000", "N", edition), done);
+}
+
+/// A parameter without a value needs a range that says what it is, and is a number.
+#[test]
+fn a_parameter_may_have_no_value() {
+    const START: &str = "protocol variant \"A variant\"\n  extends  en14363-2016-annex-t\n\n";
+    let told = |parameter: &str| {
+        let text = format!(
+            "{START}parameter highest \"Highest\"\n  default  not stated\n{parameter}\nquantity Y_max\n  limit  std highest\n"
+        );
+        let (_, plan, problems) = checked_with(&Source::new("variant.fp", text), &Overrides::new());
+        (plan.is_some(), problems.0.first().map(|problem| problem.code))
+    };
+    assert!(told("  range  1 kN to 9 kN\n").0);
+    assert_eq!(told(""), (false, Some("missing-field")));
+    assert_eq!(told("  one of  a, b\n"), (false, Some("unknown-choice")));
+    // As the edge of a filter it would be needed before any record is read.
+    let filter = "protocol variant \"A variant\"\n  extends  en14363-2016-annex-t\n\nparameter lowpass_frequency\n  default  not stated\n";
+    let (_, plan, _) = checked_with(&Source::new("variant.fp", filter), &Overrides::new());
+    assert!(plan.is_none());
 }
 
 /// A variant with a slip in a name adds something, and what it was to change stays: this is told. A

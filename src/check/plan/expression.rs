@@ -65,6 +65,8 @@ pub enum Type {
 #[derive(Clone, Debug)]
 pub enum Kind {
     Constant(Scalar),
+    /// A parameter that has no value unless it is set, and is not set.
+    NotStated(String),
     /// Index into [`Plan::vehicle`](super::Plan::vehicle).
     Vehicle(usize),
     /// Index into [`Plan::columns`](super::Plan::columns).

@@ -31,11 +31,13 @@ pub struct Plan {
     pub source: Option<String>,
     pub scope: Option<String>,
     pub notes: Vec<String>,
+    /// What of the standard it does not do.
+    pub leaves_out: Vec<String>,
     pub axis: Axis,
     pub time: Option<Axis>,
     pub parameters: Vec<Parameter>,
-    /// Definitions and quantities with numbers that are to be confirmed, and why.
-    pub unconfirmed: Vec<(String, String)>,
+    /// Values that are to be confirmed.
+    pub values: result::StatedValues,
     pub vehicle: Vec<Datum>,
     pub columns: Vec<Datum>,
     /// Names of campaigns that conditions ask for, where they stand.
@@ -106,7 +108,9 @@ pub struct Parameter {
     pub value: String,
     pub default: String,
     pub set_by: SetBy,
-    /// Why its value is to be confirmed.
+    /// Whether it has a value.
+    pub stated: bool,
+    /// Why its default is to be confirmed.
     pub unconfirmed: Option<String>,
     /// The words of a choice; empty otherwise.
     pub choices: Vec<String>,

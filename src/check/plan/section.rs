@@ -27,6 +27,8 @@ pub struct Check {
     pub unless: Option<Expr>,
     pub words: String,
     pub otherwise: OnFault,
+    /// Whether the verdict is not assessable where it cannot be checked.
+    pub required: bool,
     pub span: Span,
 }
 

@@ -1,5 +1,6 @@
 //! What `campaign.yaml` says of the layout of the folder.
 
+use super::confirmed::Confirmed;
 use super::members::{RecordFolder, record_folders};
 use super::opening::{Opening, Reader};
 use super::runs::{Run, runs};
@@ -30,6 +31,7 @@ fields! {
         "runs" runs (runs): Option<Vec<Run>>,
         "protocol" protocol: Option<Spanned<String>>,
         "parameters" parameters (parameters): Option<Vec<Parameter>>,
+        "confirmed" confirmed: Option<Vec<Confirmed>>,
         "origin" origin (origin): Option<Origin>,
         /// Records that were changed after an import.
         "edited" edited: Vec<Edited>,

@@ -31,6 +31,8 @@ pub struct Document {
     pub program: &'static str,
     /// Date of issue, `2026-03-31`; `None` if it is not stated.
     pub issued: Option<String>,
+    /// Every page is marked as a draft.
+    pub draft: bool,
     /// Without it, the chapters follow the title.
     pub cover: Option<Cover>,
     pub chapters: Vec<Chapter>,

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{View, campaign, identity, verdicts, wording};
+use super::{View, campaign, identity, statistic, verdicts, wording};
 use crate::report::document::*;
 use crate::report::number::{self, raised};
 use crate::report::rules;
@@ -11,6 +11,8 @@ use crate::result::{CampaignInfo, Certification, Kind, ProtocolInfo, QuantityRes
 /// Reasons on the cover, and where a table of verdicts takes their room; the summary lists all.
 const REASONS: usize = 8;
 const REASONS_BESIDE_VERDICTS: usize = 3;
+/// Limitations on the cover; the summary lists all.
+const LIMITATIONS: usize = 3;
 /// Verdicts with a name that the cover has room for.
 pub const VERDICTS: usize = 6;
 /// Letters of a hash in the margin of each page.
@@ -46,11 +48,13 @@ pub fn cover(view: &View<'_>) -> Cover {
     let result = ResultBox {
         label: Some(title.map_or("Verdict".into(), |title| format!("Verdict: {title}"))),
         finding: finding(view),
-        note: found.verdict_note.as_ref().map(|note| note.text().into()),
-        sentence: wording::sentence(found).to_owned() + &origin.unwrap_or_default(),
+        note: found.beside_the_verdict(),
+        sentence: [wording::sentence(found).to_owned(), origin.unwrap_or_default(), decides(found)]
+            .concat(),
     };
     let mut blocks = Vec::from_iter(beside(view));
     blocks.extend(reasons(view));
+    blocks.extend(limitations(view, LIMITATIONS).map(|block| Block::on_paper([block])));
     blocks.extend(verdicts_with_a_name(view));
     blocks.push(Block::Tiles(key_facts(view)));
     blocks.extend(identification(view));
@@ -81,6 +85,53 @@ pub fn finding(view: &View<'_>) -> Finding {
         Some(outcome) => verdicts::finding(outcome, word),
         None => Finding::new(holds, word, word, word),
     }
+}
+
+/// The statistic that is closest to its limit, or furthest beyond, with its interval.
+fn decides(found: &Certification) -> String {
+    let met = found.verdict == Verdict::Validated;
+    let all = found.quantities.iter().flat_map(|quantity| {
+        quantity.statistics.iter().map(move |statistic| (quantity, statistic))
+    });
+    let deciding = all.filter(|(_, one)| one.holds == Some(met) && one.normalised.is_some());
+    let (Some((quantity, one)), true) = (
+        deciding.max_by(|(_, a), (_, b)| {
+            a.normalised.unwrap_or(0.0).total_cmp(&b.normalised.unwrap_or(0.0))
+        }),
+        found.verdict != Verdict::NotAssessable,
+    ) else {
+        return String::new();
+    };
+    let printed = |cell: Cell| cell.printed().letters();
+    let [value, limit] = [statistic::value(Some(one)), statistic::limit(Some(one))].map(printed);
+    let [interval, ..] = statistic::interval(one).map(printed);
+    let interval = match one.interval {
+        Some(_) => format!(" (95 % interval {interval})"),
+        None => String::new(),
+    };
+    let how = if met { "Closest to its limit" } else { "Furthest beyond its limit" };
+    let unit = number::unit(&one.unit);
+    let unit = if unit == number::NONE { String::new() } else { format!(" {unit}") };
+    format!(
+        " {how}: {} of {}, {value}{unit}{interval}, limit {limit}{unit}.",
+        number::formula(&one.title),
+        super::symbol(&quantity.symbol)
+    )
+}
+
+/// What limits the verdict, of which the first are printed where there is little room.
+pub fn limitations(view: &View<'_>, most: usize) -> Option<Block> {
+    let notes = &view.found.notes;
+    let mut entries: Vec<Text> = notes
+        .iter()
+        .take(most)
+        .map(|note| view.symbols.text(&number::raised(note.text())))
+        .collect();
+    if notes.len() > most {
+        entries.push(format!("All {} limitations are listed in the summary.", notes.len()).into());
+    }
+    let title = "Limitations";
+    (!entries.is_empty()).then_some(Block::Boxed { tone: None, title, entries })
 }
 
 fn on_cover(view: &View<'_>) -> bool {
@@ -186,6 +237,9 @@ fn key_facts(view: &View<'_>) -> Vec<Fact> {
         let kind = found.quantities.iter().filter(|quantity| quantity.from.is_some() == assessed);
         number::count(kind.map(|quantity| quantity.values.len() as u64).sum())
     };
+    if found.verdict == Verdict::NotAssessable {
+        quantities.push_str(" (preliminary)");
+    }
     let mut facts = vec![Fact::new("Criteria by quantity", quantities)];
     if !found.campaign.members.is_empty() {
         facts.push(Fact::new("Campaigns", found.campaign.members.len().to_string()));

@@ -3,8 +3,9 @@
 
 use super::View;
 use crate::report::document::*;
+use crate::result::confirmation::Signed;
 use crate::result::report::stated;
-use crate::result::{Certification, Finding, FindingData, Occurrence, ReportItem};
+use crate::result::{Certification, Departed, ReportItem, StatedValue};
 
 /// Printed for an item that the campaign does not state.
 const NOT_STATED: &str = "not stated";
@@ -68,7 +69,8 @@ pub fn chapter(view: &View<'_>) -> Chapter {
     }));
     rows.extend([
         row("7.8.2.1 f)", "Method", &method),
-        row("7.8.2.1 n)", "Deviations from the method", &deviations(found)),
+        row("7.8.2.1 n)", "Deviations from the standard", &deviations(found, Departed::Standard)),
+        row("7.8.2.1 n)", "Deviations from the protocol", &deviations(found, Departed::Protocol)),
         row(
             "7.8.2.1 l)",
             "Scope of the results",
@@ -83,8 +85,48 @@ pub fn chapter(view: &View<'_>) -> Chapter {
     ];
     let about = "The items follow the checklist of ISO/IEC 17025:2017, clause 7.8. An item that the campaign does not state is listed as “not stated”.";
     let table = Table::new("Items of the report", columns, rows).class("");
+    let mut blocks = vec![Block::text(about), table.into()];
+    blocks.extend(values(found));
     let title = "Identification of the report";
-    Chapter::new("identity", title, vec![Block::text(about), table.into()]).called("Identification")
+    Chapter::new("identity", title, blocks).called("Identification")
+}
+
+/// The values that a user answers for, and who confirmed them.
+fn values(found: &Certification) -> Vec<Block> {
+    let row = |value: &StatedValue, signed: Option<&Signed>| {
+        let title = (!value.title.is_empty()).then(|| Text::from(&value.title));
+        let why = value.why.as_deref().unwrap_or("A value set in place of the default.");
+        let lines = [Text::from(Run::Code(value.name.clone()))].into_iter().chain(title);
+        let confirmed = match signed {
+            Some(Signed { by, date }) => Cell::text(format!("{by}, {date}")),
+            None => Cell::text(Run::Emphasis("not confirmed".into())),
+        };
+        cells![
+            Cell::text(Text::lines(lines.chain([Run::Quiet(why.to_owned()).into()]))),
+            Cell::formula(&value.in_words()),
+            Cell::or_missing(value.clause.as_deref()),
+            confirmed
+        ]
+    };
+    let open = found.provisional.iter().map(|value| row(value, None));
+    let confirmed = found.confirmed.iter().map(|one| row(&one.value, Some(&one.signed)));
+    let rows: Vec<_> = open.chain(confirmed).collect();
+    if rows.is_empty() {
+        return Vec::new();
+    }
+    let about = "The protocol does not have these values from a checked source, or they were set in place of its own. The verdict is provisional until each is confirmed for this edition of the protocol (campaign.yaml, `confirmed`).";
+    let columns = vec![
+        Column::text("Value of").wide(1.6),
+        Column::text("Value").wide(1.0),
+        Column::text("Clause or source").wide(1.0),
+        Column::text("Confirmed by").wide(0.7),
+    ];
+    let caption = "Values to be confirmed";
+    vec![
+        Block::heading(caption),
+        Block::text(about),
+        Table::new(caption, columns, rows).class("").size(8.0).into(),
+    ]
 }
 
 /// A clause number without line breaks, if there is one.
@@ -92,45 +134,14 @@ fn unbroken(clause: &str) -> Option<String> {
     (!clause.is_empty()).then(|| clause.replace(' ', "\u{a0}"))
 }
 
-/// A record that was edited, and why.
-fn edited(place: &Occurrence) -> Option<String> {
-    match &place.data {
-        FindingData::RecordChanged { file, reason: Some(reason), .. } => {
-            Some(format!("{file} ({reason})"))
-        }
-        _ => None,
+fn deviations(found: &Certification, from: Departed) -> String {
+    let of = found.deviations.iter().filter(|one| one.from == from);
+    let says: Vec<String> = of.map(|one| one.what.text().into()).collect();
+    match from {
+        _ if !says.is_empty() => says.join(" "),
+        Departed::Standard => "None that the protocol states.".to_owned(),
+        Departed::Protocol => "None.".to_owned(),
     }
-}
-
-fn deviations(found: &Certification) -> String {
-    let protocol = &found.protocol;
-    let changed: Vec<String> = protocol
-        .parameters
-        .iter()
-        .filter(|parameter| parameter.value != parameter.default)
-        .map(|parameter| {
-            format!("{} = {} (default {})", parameter.name, parameter.value, parameter.default)
-        })
-        .collect();
-    let mut parts = Vec::new();
-    match protocol.deviations.len() {
-        0 => {}
-        1 => parts.push("1 rule differs from the parent protocol".to_owned()),
-        many => parts.push(format!("{many} rules differ from the parent protocol")),
-    }
-    if !changed.is_empty() {
-        parts.push(format!("parameters changed: {}", changed.join(", ")));
-    }
-    let edited: Vec<String> =
-        found.findings.iter().flat_map(Finding::places).filter_map(edited).collect();
-    let mut said = Vec::new();
-    if !parts.is_empty() {
-        said.push(format!("{}; see chapter Protocol.", parts.join("; ")));
-    }
-    if !edited.is_empty() {
-        said.push(format!("Records edited after the import: {}.", edited.join("; ")));
-    }
-    if said.is_empty() { "None from the protocol.".to_owned() } else { said.join(" ") }
 }
 
 #[cfg(test)]

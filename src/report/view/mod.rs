@@ -64,6 +64,7 @@ pub fn document(found: &Certification) -> Document {
         title: title(view),
         program: PROGRAM,
         issued: identity::issued(&found.campaign.report),
+        draft: found.draft,
         cover: Some(cover::cover(view)),
         chapters,
     }
@@ -92,6 +93,7 @@ pub fn study(
         title,
         program: PROGRAM,
         issued: identity::issued(&campaign.report),
+        draft: false,
         cover: Some(Cover { blocks: vec![Block::Tiles(facts)], ..cover }),
         chapters,
     }

@@ -6,6 +6,9 @@ use crate::report::document::*;
 use crate::report::{estimates, findings, number};
 use crate::result::{Certification, QuantityResult, StatisticName, StatisticResult};
 
+/// What the word means behind a criterion.
+const MARGINAL: &str = "Marginal: the 95 % interval of the statistic contains the limit, so that another choice of sections could change the result.";
+
 pub fn chapter(view: &View<'_>) -> Chapter {
     let found = view.found;
     let finding = cover::finding(view);
@@ -23,14 +26,14 @@ pub fn chapter(view: &View<'_>) -> Chapter {
     if !found.findings.is_empty() {
         remarks.push(findings::table(&found.findings).into());
     }
-    if !found.notes.is_empty() {
-        let notes = found.notes.iter().map(|note| view.symbols.text(&number::raised(note.text())));
-        let title = "Remarks that do not affect the verdict";
-        remarks.push(Block::Boxed { tone: None, title, entries: notes.collect() });
-    }
+    remarks.extend(cover::limitations(view, usize::MAX));
     opening.extend(remarks.iter().cloned());
     let mut blocks = vec![Block::on_paper(opening)];
     blocks.extend(tables(view).into_iter().map(Block::from));
+    let marginal = |quantity: &QuantityResult| quantity.statistics.iter().any(|one| one.marginal);
+    if found.quantities.iter().any(marginal) {
+        blocks.push(Block::text(MARGINAL));
+    }
     let estimates = groups::summary(view);
     blocks.extend((!estimates.rows.is_empty()).then(|| estimates.into()));
     blocks.extend(overview(found).map(Block::from));

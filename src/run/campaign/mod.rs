@@ -77,7 +77,6 @@ pub fn judge(
     let Evaluated { facts, units, findings, notes, files, application, reduction, .. } = &evaluated;
     let mut findings = findings.clone();
     let judged = evaluated.judge(plan);
-    findings.extend(requirements::findings(plan, facts, units));
     findings.extend(not_asked::findings(plan, facts, units));
     findings.extend(told::findings(plan, facts, &judged.quantities));
     findings.extend(extrapolation::findings(&judged.quantities));

@@ -6,9 +6,9 @@ use indexmap::IndexMap;
 
 use crate::check::plan::{OnFault, Plan};
 use crate::problem::{Problem, Problems};
-use crate::result::{Consequence, Finding, Reason, Remark, Sections};
-use crate::run::sections::requirements::{asked, not_stated, of_check};
-use crate::run::sections::{Facts, Unit};
+use crate::result::{Consequence, Finding, Reason, Remark};
+use crate::run::sections::Unit;
+use crate::run::sections::requirements::{Unchecked, of_check, unchecked};
 use crate::run::values::{SectionValues, margin_note};
 
 /// The consequence of a finding, from the rule's `otherwise`. For `stop`, the run ends elsewhere.
@@ -26,7 +26,6 @@ pub fn consequence(otherwise: OnFault) -> Consequence {
 /// `section-check` for each check that is not met and has `otherwise stop`.
 pub fn take_over(
     plan: &Plan,
-    facts: &Facts,
     units: &mut [Unit],
     values: &[SectionValues],
     copies: &[Finding],
@@ -75,39 +74,16 @@ pub fn take_over(
             unit.refuse(fault.clone(), true);
         }
     }
-    notes.extend(unchecked(plan, facts, units));
+    let optional = unchecked(plan, units).into_iter().filter(|one| !one.required);
+    notes.extend(optional.map(|Unchecked { title, says, sections, .. }| Remark::Unchecked {
+        check: title.into(),
+        reason: says.clone(),
+        sections,
+    }));
     let used =
         units.iter().zip(values).filter(|(unit, _)| unit.fault.is_none()).map(|(_, values)| values);
     notes.extend(margin_note(used));
     if stop.any_error() { Err(stop) } else { Ok(()) }
-}
-
-/// One note for each requirement that could not be checked in sections that are used nevertheless.
-fn unchecked(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<Remark> {
-    let mut found: Vec<(&str, &Reason, Vec<&str>)> = Vec::new();
-    for unit in units.iter().filter(|unit| unit.fault.is_none()) {
-        for check in unit.checks.iter().filter(|check| check.holds.is_none()) {
-            // A datum missing from the vehicle file is reported by a finding.
-            if asked(plan, unit, check)
-                .is_some_and(|rule| !not_stated(rule, facts.of(unit)).is_empty())
-            {
-                continue;
-            }
-            match found
-                .iter_mut()
-                .find(|(title, says, _)| *title == check.title && **says == check.says)
-            {
-                Some((_, _, names)) => names.push(&unit.name),
-                None => found.push((&check.title, &check.says, vec![&unit.name])),
-            }
-        }
-    }
-    let remark = |(title, says, names): (&str, &Reason, Vec<&str>)| Remark::Unchecked {
-        check: title.into(),
-        reason: says.clone(),
-        sections: Sections::of(&names, units.len()),
-    };
-    found.into_iter().map(remark).collect()
 }
 
 /// Ends the run at a fault in one section, where the protocol states `stop`. The problems of the

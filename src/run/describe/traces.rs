@@ -123,7 +123,7 @@ pub fn kept(work: &Work<'_>, sections: &[(usize, SectionValues)]) -> Vec<Kept> {
         sections.iter().filter_map(|(number, _)| work.units.get(*number).cloned()).collect();
     let values: Vec<SectionValues> = sections.iter().map(|(_, values)| values.clone()).collect();
     // What stops a run stops it when the sections are judged.
-    let _ = take_over(work.plan, work.facts, &mut units, &values, &[], &mut Vec::new());
+    let _ = take_over(work.plan, &mut units, &values, &[], &mut Vec::new());
     let mut picks: BTreeMap<usize, Vec<Pick<'_>>> = BTreeMap::new();
     for (index, quantity) in work.plan.quantities.iter().enumerate() {
         let mut worst: Vec<(f64, Pick<'_>)> = Vec::new();

@@ -8,10 +8,7 @@ use crate::check::evaluate::{flag, number};
 use crate::check::plan::{Expr, Kind, Plan, SectionRules, Zone};
 use crate::check::possible::{Possible, possible};
 use crate::check::values::{Values, Watched};
-use crate::result::{
-    CheckResult, DataItem, Datum, Finding, FindingData, Occurrence, Reason, SELECTION, Sections,
-    Subject,
-};
+use crate::result::{CheckResult, DataItem, Datum, Finding, FindingData, Occurrence, Reason, SELECTION, Sections, Subject};
 
 /// Relative tolerance for a minimum length, for the rounding of section ends written with two
 /// decimals.
@@ -42,7 +39,7 @@ pub fn check_data(plan: &Plan, facts: &Facts, units: &mut [Unit]) {
             // A datum missing from the vehicle file is not a fault of the section. The section is
             // used, and a finding reports it.
             let untold = check.name == "length" && check.holds.is_none() && {
-                let minimum = asked(plan, unit, &check);
+                let minimum = zone.and_then(|zone| zone.minimum_length.as_ref());
                 minimum.is_some_and(|minimum| !not_stated(minimum, facts.of(unit)).is_empty())
             };
             if check.holds != Some(true) && !untold {
@@ -138,36 +135,33 @@ pub fn not_stated(expr: &Expr, vehicle: &Vehicle) -> Vec<usize> {
     found
 }
 
-/// One finding for each vehicle datum that is not stated and each requirement that could not be
-/// checked without it.
-pub fn findings(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<Finding> {
-    let mut found: IndexMap<(usize, &str), Vec<&str>> = IndexMap::new();
-    for unit in units.iter().filter(|unit| unit.fault.is_none()) {
-        for check in unit.checks.iter().filter(|check| check.holds.is_none()) {
-            let Some(expr) = asked(plan, unit, check) else { continue };
-            for index in not_stated(expr, facts.of(unit)) {
-                found.entry((index, &check.title)).or_default().push(&unit.name);
-            }
-        }
-    }
-    let finding = |((index, title), names): ((usize, &str), Vec<&str>)| {
-        let key = &plan.vehicle[index].key;
-        let data = FindingData::CheckWithoutVehicleData {
-            key: key.clone(),
-            check: title.to_lowercase(),
-            sections: Sections::of(&names, units.len()),
-        };
-        let first = Occurrence { channel: Some(key.clone()), ..data.into() };
-        Finding::note("vehicle-data-not-stated", first)
-    };
-    found.into_iter().map(finding).collect()
+/// A requirement that could not be checked in sections that are used nevertheless.
+#[derive(Debug)]
+pub struct Unchecked<'a> {
+    pub title: &'a str,
+    pub says: &'a Reason,
+    pub sections: Sections,
+    /// Whether the protocol requires it.
+    pub required: bool,
 }
 
-/// The rule behind a requirement that may remain unchecked.
-pub fn asked<'a>(plan: &'a Plan, unit: &Unit, check: &CheckResult) -> Option<&'a Expr> {
-    if check.name == "length" {
-        let zone = plan.zones.iter().find(|zone| Some(&zone.name) == unit.zone.as_ref())?;
-        return zone.minimum_length.as_ref();
+/// All of them, in the order of the sections.
+pub fn unchecked<'a>(plan: &Plan, units: &'a [Unit]) -> Vec<Unchecked<'a>> {
+    let mut found: IndexMap<(&str, String), (&CheckResult, Vec<&str>)> = IndexMap::new();
+    for unit in units.iter().filter(|unit| unit.fault.is_none()) {
+        for check in unit.checks.iter().filter(|check| check.holds.is_none()) {
+            let key = (check.title.as_str(), check.says.text().into());
+            found.entry(key).or_insert((check, Vec::new())).1.push(&unit.name);
+        }
     }
-    plan.checks.iter().find(|rule| rule.name == check.name).map(|rule| &rule.require)
+    let one = |(check, names): (&'a CheckResult, Vec<&str>)| Unchecked {
+        title: &check.title,
+        says: match &check.says {
+            Reason::NotChecked { reason } => reason,
+            other => other,
+        },
+        sections: Sections::of(&names, units.len()),
+        required: plan.checks.iter().all(|rule| rule.name != check.name || rule.required),
+    };
+    found.into_values().map(one).collect()
 }

@@ -67,7 +67,7 @@ impl Basis {
         let values: Vec<SectionValues> =
             values.into_iter().map(Option::unwrap_or_default).collect();
         let copies = copies::find(plan, &units, &values);
-        take_over(plan, &self.facts, &mut units, &values, &copies, &mut notes)?;
+        take_over(plan, &mut units, &values, &copies, &mut notes)?;
         stop_on_fault(plan, &units, &values)?;
         let reduction = keep::keep(plan, &self.facts, &mut units, &values);
         let values = without_unused_originals(plan, &units, values);

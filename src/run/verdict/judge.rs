@@ -16,6 +16,7 @@ use crate::run::data_rules::changed;
 use crate::run::describe::{reports, spreads};
 use crate::run::estimate::{Group, Member, Rows, count_independent, used};
 use crate::run::limit::{Compared, Judging, rule_place};
+use crate::run::sections::requirements::{self, Unchecked};
 use crate::run::sections::{Facts, Unit};
 use crate::run::values::{Row, SectionValues};
 
@@ -62,6 +63,11 @@ pub fn judge(
     missing.extend(not_plausible(plan, told.findings, missing.is_empty()));
     missing.extend(changed::reason(told.findings));
     missing.extend(told.barred);
+    missing.extend(parameters_not_stated(plan));
+    let required = requirements::unchecked(plan, units).into_iter().filter(|one| one.required);
+    missing.extend(required.map(|Unchecked { title, says, sections, .. }| {
+        Reason::RequiredNotChecked { check: title.into(), reason: Box::new(says.clone()), sections }
+    }));
     let all = Rows::of_all(plan, facts, &used);
     let table: Vec<_> = all.iter().map(Rows::usable).collect();
     let of_quantity = |(quantity, Rows { members, too_few, reason }): (&Quantity, &Rows<'_>)| {
@@ -82,6 +88,13 @@ pub fn judge(
     let reported = reports::of_sections(plan, facts, used.iter().map(|(unit, _)| *unit));
     let reasons = overall.reasons;
     Judged { verdict, own_word, reasons, verdicts, quantities, zones, reported }
+}
+
+/// One reason for all parameters that have no value.
+fn parameters_not_stated(plan: &Plan) -> Option<Reason> {
+    let names = plan.parameters.iter().filter(|one| !one.stated).map(|one| one.name.clone());
+    let parameters: Vec<String> = names.collect();
+    (!parameters.is_empty()).then_some(Reason::ParametersNotStated { parameters })
 }
 
 /// One reason for each of several campaigns of which no section is used: the verdict names it, but

@@ -181,6 +181,7 @@ fn units(plan: &Plan, results: &Certification) -> Result<Vec<Unit>, String> {
                 .then(|| (axis.to_si(section.start), axis.to_si(section.end))),
             fault: (!section.used)
                 .then(|| section.reason.clone().unwrap_or_else(|| Reason::said(""))),
+            checks: section.checks.clone(),
             ..Unit::new(&cell, site, columns)
         })
     };

@@ -29,7 +29,7 @@ pub(super) const SOURCE: Key =
     text("source", "Publication of the rule or number.", "Goetz & Polach, Table 1");
 pub(super) const UNCONFIRMED: Key = text(
     "unconfirmed",
-    "Why its number is not from a checked source. The report prints \"to be confirmed\" beside it, \"against the standard\" if the protocol has a `source`.",
+    "Why its number is not from a checked source. Until the campaign confirms it, the report prints \"to be confirmed\" beside it, \"against the standard\" if the protocol has a `source`, and the verdict is provisional.",
     "Read in a secondary source; the standard was not to hand.",
 );
 pub(super) const WORDS: Key = phrase(

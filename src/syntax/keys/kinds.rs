@@ -52,6 +52,11 @@ pub const KINDS: &[Kind] = &[
                     "The channel with the time of the samples. Filters need it.",
                     "time in s",
                 ),
+                many(text(
+                    "leaves out",
+                    "What the protocol does not do of its standard. The report lists it under the deviations.",
+                    "The assessment of bogie-frame accelerations.",
+                )),
                 NOTE,
             ],
         )
@@ -107,7 +112,7 @@ pub const KINDS: &[Kind] = &[
             FOR_EACH,
             phrase(
                 "default",
-                "The default value: a number with its unit, or one of the choices.",
+                "The default value: a number with its unit, or one of the choices. `not stated`: the number has no value unless it is set, and without it the verdict is not assessable; its range says what it is.",
                 "20 Hz",
             ),
             phrase("one of", "The possible words of a choice.", "oriented, signed, magnitudes"),
@@ -325,6 +330,11 @@ pub const KINDS: &[Kind] = &[
             phrase(
                 "otherwise",
                 "The treatment of a section that does not meet it: `not used` (the default), `note` or `stop`.",
+                "note",
+            ),
+            phrase(
+                "unchecked",
+                "The treatment of a section in which it cannot be checked: `not assessable` (the default), or `note`, also if `otherwise` is `note`.",
                 "note",
             ),
             CLAUSE,

@@ -1,0 +1,44 @@
+//! What was done differently than the standard and the protocol say.
+
+use crate::check::plan::{Parameter, Plan, SetBy};
+use crate::result::{Departed, DeviationFrom, Finding, FindingData, ProtocolInfo, Remark};
+
+/// All deviations; of the remarks of a run, those that are some are taken out.
+pub fn all(
+    plan: &Plan,
+    protocol: &ProtocolInfo,
+    findings: &[Finding],
+    notes: &mut Vec<Remark>,
+) -> Vec<DeviationFrom> {
+    let left_out = plan.leaves_out.iter().map(|says| Remark::LeavesOut { says: says.clone() });
+    let changed = Some(protocol.deviations.len()).filter(|rules| *rules > 0);
+    let changed = changed.map(|rules| Remark::RulesChanged { rules });
+    let unchecked = notes.extract_if(.., |note| matches!(note, Remark::Unchecked { .. }));
+    let of_protocol =
+        changed.into_iter().chain(parameters_set(plan)).chain(unchecked).chain(edited(findings));
+    let from = |from| move |what| DeviationFrom { from, what };
+    left_out
+        .map(from(Departed::Standard))
+        .chain(of_protocol.map(from(Departed::Protocol)))
+        .collect()
+}
+
+/// Records that were changed after their import, where the campaign gives the reason.
+fn edited(findings: &[Finding]) -> impl Iterator<Item = Remark> {
+    findings.iter().flat_map(Finding::places).filter_map(|place| match &place.data {
+        FindingData::RecordChanged { file, reason: Some(reason), .. } => {
+            Some(Remark::RecordEdited { file: file.clone(), reason: reason.clone() })
+        }
+        _ => None,
+    })
+}
+
+/// Parameters with values other than the default, since the verdict depends on them.
+fn parameters_set(plan: &Plan) -> Option<Remark> {
+    let set = |parameter: &&Parameter| {
+        parameter.set_by != SetBy::Default && parameter.value != parameter.default
+    };
+    let parameters: Vec<_> =
+        plan.parameters.iter().filter(set).map(super::parameter_info).collect();
+    (!parameters.is_empty()).then_some(Remark::ParametersSet { parameters })
+}
