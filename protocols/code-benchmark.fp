@@ -15,14 +15,16 @@ protocol code-benchmark "Comparison of simulation codes on one case"
           "differs moves the mean. See also code-benchmark-reference."
 
 parameter force_tolerance "Largest spread of a force"
-  default  1 kN
-  range    0.001 kN to 50 kN
-  source   "Own choice; to be agreed by those who compare"
+  default      1 kN
+  range        0.001 kN to 50 kN
+  unconfirmed  "A choice of this text."
+  source       "Own choice; to be agreed by those who compare"
 
 parameter acceleration_tolerance "Largest spread of an acceleration"
-  default  0.05 m/s^2
-  range    0.0001 m/s^2 to 10 m/s^2
-  source   "Own choice; to be agreed by those who compare"
+  default      0.05 m/s^2
+  range        0.0001 m/s^2 to 10 m/s^2
+  unconfirmed  "A choice of this text."
+  source       "Own choice; to be agreed by those who compare"
 
 parameter evaluated_wheelsets "Wheelsets whose forces are compared"
   default  1

@@ -16,9 +16,10 @@ parameter contact_spacing "Distance of the contact points, over which the cant i
   range    1000 mm to 2000 mm
 
 parameter flexibility_difference "Limit of the relative difference of the simulated and the measured coefficient"
-  default  10 %
-  range    0.1 % to 100 %
-  source   "This protocol's own: the paper names the coefficient and no limit"
+  default      10 %
+  range        0.1 % to 100 %
+  unconfirmed  "A choice of this text."
+  source       "This protocol's own: the paper names the coefficient and no limit"
 
 parameter flexibility_limit "Limit of the measured flexibility coefficient"
   default      0.4

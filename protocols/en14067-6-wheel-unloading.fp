@@ -26,14 +26,17 @@ parameter lowpass_frequency "Cut-off of the low-pass filter of the wheel forces"
   source       "EN 14067-6:2010"
 
 parameter unloading_difference "Limit of the difference of simulated and measured unloading"
-  default  0.05
-  range    0.001 to 1
-  source   "This protocol's own: the standard, as the paper says of such standards, gives no matching error"
+  default      0.05
+  range        0.001 to 1
+  unconfirmed  "A choice of this text."
+  source       "This protocol's own: the standard, as the paper says of such standards, gives no matching"
+               "error"
 
 parameter force_difference "Limit of the difference of simulated and measured quasi-static wheelset force, over the static one"
-  default  0.05
-  range    0.001 to 1
-  source   "This protocol's own"
+  default      0.05
+  range        0.001 to 1
+  unconfirmed  "A choice of this text."
+  source       "This protocol's own"
 
 place wheelset
   members  1, 2, 3, 4

@@ -281,9 +281,8 @@ zone 1 "Straight track and very large radius curves"
   where             direction is straight or (radius > 600 m and |cant_deficiency| <= 40 mm)
   minimum sections  sections_per_zone
   minimum length    250 m when admissible_speed <= 220 km/h, otherwise 500 m
-  source            "Zone and lengths of 70 m to 500 m in all: section 3.1. Radius, 40 mm and length of this"
-                    "zone: from memory of EN 14363, without a source at hand; to be checked against the"
-                    "edition used"
+  unconfirmed       "Radius, 40 mm and length from memory of EN 14363; the standard was not to hand."
+  source            "Zone and lengths of 70 m to 500 m in all: section 3.1"
 
 zone 2 "Large radius curves"
   where             radius > 600 m
@@ -291,23 +290,23 @@ zone 2 "Large radius curves"
   minimum length    100 m when admissible_speed <= 140 km/h,
                     250 m when admissible_speed <= 220 km/h,
                     otherwise 500 m
-  source            "Zone: section 3.1. Radius and length: from memory of EN 14363, without a source at hand;"
-                    "to be checked against the edition used"
+  unconfirmed       "Radius and length from memory of EN 14363; the standard was not to hand."
+  source            "Zone: section 3.1"
   note              "No range of the cant deficiency is required."
 
 zone 3 "Small radius curves"
   where             400 m <= radius <= 600 m
   minimum sections  sections_per_zone
   minimum length    100 m
-  source            "Zone: section 3.1. Radii and length: from memory of EN 14363, without a source at hand;"
-                    "to be checked against the edition used"
+  unconfirmed       "Radii and length from memory of EN 14363; the standard was not to hand."
+  source            "Zone: section 3.1"
 
 zone 4 "Very small radius curves"
   where             250 m <= radius < 400 m
   minimum sections  sections_per_zone
   minimum length    70 m
-  source            "Zone and length of 70 m: section 3.1. Radii: from memory of EN 14363, without a source"
-                    "at hand; to be checked against the edition used"
+  unconfirmed       "Radii from memory of EN 14363; the standard was not to hand."
+  source            "Zone and length of 70 m: section 3.1"
 
 check full_curve "Section lies in full curve or on straight track"
   require    range of curvature <= 2 % * |mean of curvature| + 0.00001 1/m
