@@ -448,10 +448,35 @@ pub const METRICS: &[MetricEntry] = &[
         Best::Greatest(1.0),
         "Mean coherence of the spectral lines from the first frequency to below the second: Welch's method, Hann windows of 256 samples, 50 % overlap.",
         "Welch 1967",
-        |p| {
-            let band = p.band.ok_or("the frequencies are missing")?;
-            said(coherence::in_band(p.simulated, p.measured, p.rate, band))
-        },
+        |p| said(coherence::in_band(p.simulated, p.measured, p.rate, in_band(p)?)),
+    ),
+    entry(
+        &[
+            Word("shared"),
+            Word("content"),
+            Word("from"),
+            Frequency("low"),
+            Word("to"),
+            Frequency("high"),
+        ],
+        Best::Greatest(1.0),
+        "Share of the content of the band that both signals have in common at their best shift, less what unrelated signals have by chance: about 0 for two noises, 1 where one signal is made from the other.",
+        "Carter, Knapp & Nuttall 1973",
+        |p| said(coherence::shared(p.simulated, p.measured, p.rate, in_band(p)?)),
+    ),
+    entry(
+        &[
+            Word("unexplained"),
+            Word("content"),
+            Word("from"),
+            Frequency("low"),
+            Word("to"),
+            Frequency("high"),
+        ],
+        Best::Least(0.0),
+        "What the other signal does not explain of the band: its share of the content times the ratio of its spectral density to that in the upper 40 % of the spectrum, the smaller one of both signals. Below 0.1 where one signal is the other one with noise.",
+        "definition",
+        |p| said(coherence::unexplained(p.simulated, p.measured, p.rate, in_band(p)?)),
     ),
     of_loops(
         &[Word("hysteresis"), Word("maximum"), Word("over"), Signal("axis")],
@@ -464,6 +489,11 @@ pub const METRICS: &[MetricEntry] = &[
         |p| loop_error(p).map(|error| error.mean),
     ),
 ];
+
+/// The frequencies of the wording.
+fn in_band(pair: &Pair<'_>) -> Result<(f64, f64), String> {
+    pair.band.ok_or_else(|| "the frequencies are missing".into())
+}
 
 /// Why it is not defined, in words.
 fn said<T>(value: Result<T, impl std::fmt::Display>) -> Result<T, String> {

@@ -11,6 +11,7 @@ pub struct Near {
     pub holds: Expr,
     pub found: Expr,
     pub expected: Expr,
+    pub relation: Relation,
 }
 
 impl Checker<'_> {
@@ -72,6 +73,7 @@ impl Checker<'_> {
                 holds: pair(Operator::And, &same_sign, &sizes, Type::Flag),
                 found,
                 expected,
+                relation: Relation::WithinFactor,
             });
         }
         let off = size(&pair(Operator::Subtract, &found, &expected, number.clone()));
@@ -80,26 +82,20 @@ impl Checker<'_> {
         } else {
             pair(Operator::Multiply, &tolerance, &size(&expected), number.clone())
         };
-        Some(Near { holds: pair(Operator::LessEqual, &off, &room, Type::Flag), found, expected })
+        let holds = pair(Operator::LessEqual, &off, &room, Type::Flag);
+        Some(Near { holds, found, expected, relation: Relation::Within(room) })
     }
 
     /// A condition and the comparisons of which it consists: `a near b within c`, `a <= b`, or
     /// several of the latter joined by `and`. Nothing where it has other parts.
-    pub fn compared(
-        &mut self,
-        phrase: &Phrase,
-        scope: &mut Scope,
-    ) -> Option<(Expr, Vec<(Near, bool)>)> {
+    pub fn compared(&mut self, phrase: &Phrase, scope: &mut Scope) -> Option<(Expr, Vec<Near>)> {
         if let Node::Near { .. } = &phrase.node {
-            return self.near(phrase, scope).map(|near| (near.holds.clone(), vec![(near, true)]));
+            return self.near(phrase, scope).map(|near| (near.holds.clone(), vec![near]));
         }
         let holds = self.expr(phrase, scope)?;
         let mut found = Vec::new();
         let whole = bounds(&holds, &mut found);
-        Some((
-            holds,
-            if whole { found.into_iter().map(|near| (near, false)).collect() } else { Vec::new() },
-        ))
+        Some((holds, if whole { found } else { Vec::new() }))
     }
 }
 
@@ -108,18 +104,23 @@ fn bounds(condition: &Expr, found: &mut Vec<Near>) -> bool {
     match &condition.kind {
         Kind::Binary(Operator::And, left, right) => bounds(left, found) && bounds(right, found),
         Kind::Binary(
-            Operator::Less | Operator::LessEqual | Operator::Greater | Operator::GreaterEqual,
+            operator @ (Operator::Less
+            | Operator::LessEqual
+            | Operator::Greater
+            | Operator::GreaterEqual),
             left,
             right,
         ) => {
             // `0.02 m/s^2 <= rms`: the number of the protocol is the bound on either side.
             let is_bound = |side: &Expr| matches!(side.kind, Kind::Constant(_));
-            let (value, bound) =
-                if is_bound(left) && !is_bound(right) { (right, left) } else { (left, right) };
+            let turned = is_bound(left) && !is_bound(right);
+            let (value, bound) = if turned { (right, left) } else { (left, right) };
+            let less = matches!(operator, Operator::Less | Operator::LessEqual);
             found.push(Near {
                 holds: condition.clone(),
                 found: (**value).clone(),
                 expected: (**bound).clone(),
+                relation: if less == turned { Relation::AtLeast } else { Relation::AtMost },
             });
             true
         }

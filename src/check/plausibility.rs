@@ -135,10 +135,12 @@ impl Checker<'_> {
                 (None, None, None) => return None,
             };
             let otherwise = otherwise?;
-            if let Test::Require(requirement) = &test {
+            let mut test = test;
+            if let Test::Require(requirement) = &mut test {
                 for input in &requirement.inputs {
                     self.samples_are_kept(input.taken, &chain, &requirement.holds.span)?;
                 }
+                requirement.over_sections = self.over_sections(block, requirement, otherwise)?;
             }
             rules.push(Plausibility {
                 name: block.own_name(),
@@ -154,6 +156,69 @@ impl Checker<'_> {
             });
         }
         Some(rules)
+    }
+
+    /// `over sections`, with `slope 0.9 to 1.1`.
+    fn over_sections(
+        &mut self,
+        block: &Block,
+        requirement: &Requirement,
+        otherwise: OnFault,
+    ) -> Option<Option<OverSections>> {
+        let (over, slope) = (block.field("over"), block.field("slope"));
+        let Some(field) = over.or(slope) else { return Some(None) };
+        let refusal = |says: &str, help: &str| {
+            Some(error("over-sections", says, field).help(help.to_string()))
+        };
+        let near =
+            requirement.compared.iter().all(|one| matches!(one.relation, Relation::Within(_)));
+        let problem = match over {
+            None => {
+                refusal("`slope` is that of all sections together", "write `over  sections` too")
+            }
+            Some(over) if normalised(&over.value.text) != "sections" => {
+                refusal("a requirement can be `over sections`", "write `over  sections`")
+            }
+            _ if matches!(requirement.of, Looks::Data | Looks::Track) => refusal(
+                "a requirement over sections needs values of signals",
+                "name a signal in `of`, and take a value of it, such as `median`",
+            ),
+            _ if requirement.compared.is_empty()
+                || requirement
+                    .compared
+                    .iter()
+                    .any(|one| matches!(one.relation, Relation::WithinFactor)) =>
+            {
+                refusal(
+                    "over sections, numbers are compared: `a <= b`, or `a near b within c`",
+                    "join comparisons by `and` only, and write a tolerance in place of a factor",
+                )
+            }
+            _ if slope.is_some() && !near => refusal(
+                "a slope is that of the values found over those expected",
+                "write `require  a near b within c`",
+            ),
+            _ if !matches!(otherwise, OnFault::Note | OnFault::NotAssessable) => refusal(
+                "what is found over all sections concerns none of them by itself",
+                "write `otherwise  not assessable`, or leave `otherwise` out",
+            ),
+            _ => None,
+        };
+        if let Some(problem) = problem {
+            return self.refuse(problem);
+        }
+        let Some(slope) = slope else { return Some(Some(OverSections::default())) };
+        let text = normalised(&slope.value.text);
+        let numbers = text.split_once(" to ").and_then(|(least, most)| {
+            let (least, most) = (least.parse::<f64>().ok()?, most.parse::<f64>().ok()?);
+            (least < most && least.is_finite() && most.is_finite()).then_some((least, most))
+        });
+        if numbers.is_none() {
+            let says = "`slope` must be two numbers, the smaller one first";
+            return self
+                .refuse(error("over-sections", says, slope).help("write `slope  0.9 to 1.1`"));
+        }
+        Some(Some(OverSections { slope: numbers }))
     }
 
     fn signals_with_unit(&mut self, field: &Field, chain: &[Step]) -> Option<Of> {
@@ -182,10 +247,10 @@ impl Checker<'_> {
         self.flag_type(&holds)?;
         self.inputs_of_one_record(&scope.inputs)?;
         let mut comparisons = Vec::new();
-        for (Near { holds, found, expected }, about) in compared {
+        for Near { holds, found, expected, relation } in compared {
             let dimension = self.number_type(&found)?;
             let unit = self.unit_of(&found, &expected, &scope.inputs, dimension, own_unit);
-            comparisons.push(Comparison { holds, found, expected, unit, about });
+            comparisons.push(Comparison { holds, found, expected, unit, relation });
         }
         let of = looks(&scope.inputs);
         Some(Requirement {
@@ -193,6 +258,7 @@ impl Checker<'_> {
             inputs: scope.inputs,
             of,
             compared: comparisons,
+            over_sections: None,
             words: normalised(&field.value.text),
         })
     }

@@ -2,16 +2,30 @@
 //! frequency (Welch).
 
 use std::f64::consts::TAU;
+use std::ops::Range;
 
 use realfft::num_complex::Complex;
 
+use super::pair::lag::{Agreement, best_shift, overlap};
 use super::pair::{Metric, Undefined, undefined};
 
 /// Number of samples of a window. The spectral lines are 1/256 of the sampling rate apart: 0.8 Hz
 /// at 200 samples per second.
 pub const WINDOW: usize = 256;
-/// Samples from one window to the next: 50 % overlap.
-const ADVANCE: usize = WINDOW / 2;
+/// Number of spectral lines, or more, in the band in which shared content is looked for: fewer, and
+/// windows are so short that lines beside the band reach into it.
+const LINES: f64 = 3.0;
+/// Least number of samples of such a window: a Hann window is four lines wide.
+const SHORTEST: usize = 32;
+/// Least number of windows: of fewer, unrelated signals share more than a tenth by chance.
+const FEWEST: usize = 8;
+/// Where the content of a signal is its noise: this share of the spectrum, up to its end. A record
+/// has no content of its own there: its anti-aliasing filter is below.
+const TOP: f64 = 0.4;
+/// Largest shift between two signals that share content, as a share of their length.
+const FARTHEST: f64 = 0.25;
+/// Windows that overlap by half are not independent: so many of them count (Hann).
+const INDEPENDENT: f64 = 0.9;
 
 /// Mean coherence of the spectral lines with low <= f < high, for a sampling rate and frequencies
 /// in the same unit.
@@ -29,51 +43,178 @@ pub fn in_band(simulated: &[f64], measured: &[f64], rate: f64, (low, high): (f64
             "the signals have {count} samples; a window of the coherence needs {WINDOW}"
         ));
     }
-    let lines: Vec<usize> = (0..=WINDOW / 2)
-        .filter(|&line| (low..high).contains(&(line as f64 * rate / WINDOW as f64)))
-        .collect();
-    if lines.is_empty() {
-        let apart = super::rounded(rate / WINDOW as f64);
-        return undefined(format!(
-            "no line of the spectrum lies in the band: the lines are {apart} apart"
-        ));
-    }
-    let hann: Vec<f64> =
-        (0..WINDOW).map(|k| 0.5 - 0.5 * (TAU * k as f64 / WINDOW as f64).cos()).collect();
-    let transform = super::fourier::forward(WINDOW);
-    let spectrum = |part: &[f64]| -> Result<Vec<Complex<f64>>, Undefined> {
-        let mean = part.iter().sum::<f64>() / WINDOW as f64;
-        let mut windowed: Vec<f64> =
-            part.iter().zip(&hann).map(|(value, weight)| (value - mean) * weight).collect();
-        let mut found = transform.make_output_vec();
-        transform
-            .process(&mut windowed, &mut found)
-            .map_err(|error| Undefined::because(error.to_string()))?;
-        Ok(found)
-    };
-    let mut of_s = vec![0.0; lines.len()];
-    let mut of_m = vec![0.0; lines.len()];
-    let mut of_both = vec![Complex::new(0.0, 0.0); lines.len()];
-    for start in (0..=simulated.len() - WINDOW).step_by(ADVANCE) {
-        let (s, m) = (
-            spectrum(&simulated[start..start + WINDOW])?,
-            spectrum(&measured[start..start + WINDOW])?,
-        );
-        for (at, &line) in lines.iter().enumerate() {
-            of_s[at] += s[line].norm_sqr();
-            of_m[at] += m[line].norm_sqr();
-            of_both[at] += s[line].conj() * m[line];
-        }
-    }
+    let spectra = Spectra::of((simulated, measured), WINDOW, Trend::Mean)?;
+    let lines = spectra.lines(rate, (low, high))?;
     let mut sum = 0.0;
-    for ((s, m), both) in of_s.iter().zip(&of_m).zip(&of_both) {
-        let one = both.norm_sqr() / (s * m);
+    let count = lines.len();
+    for line in lines {
+        let one = spectra.coherence(line);
         if !one.is_finite() {
             return undefined("one of the signals has no content at a frequency of the band");
         }
         sum += one;
     }
-    Ok(sum / lines.len() as f64)
+    Ok(sum / count as f64)
+}
+
+/// The share of the content of a band that both signals have in common, wherever one lies against
+/// the other: 1 where one is made from the other, about 0 where they are independent, as two noises
+/// are. It is the mean coherence at the best shift, less what unrelated signals have by chance.
+///
+/// # Errors
+/// Fewer samples than eight windows; no spectral line in the band.
+pub fn shared(simulated: &[f64], measured: &[f64], rate: f64, band: (f64, f64)) -> Metric {
+    let spectra = Spectra::aligned(simulated, measured, rate, band)?;
+    let lines = spectra.lines(rate, band)?;
+    let count = lines.len() as f64;
+    Ok(lines.map(|line| spectra.beyond_chance(line)).sum::<f64>() / count)
+}
+
+/// What the other signal does not explain of a band: its share, times the ratio of its spectral
+/// density there to that in the noise of the signal; the smaller one of both signals. The errors of
+/// a model follow the signal, and are several times larger than its noise. What is left of a signal
+/// that is the other one with noise is small, and as large in the band as anywhere.
+///
+/// # Errors
+/// As [`shared`]; both signals are without noise.
+pub fn unexplained(simulated: &[f64], measured: &[f64], rate: f64, band: (f64, f64)) -> Metric {
+    let spectra = Spectra::aligned(simulated, measured, rate, band)?;
+    let lines = spectra.lines(rate, band)?;
+    let end = spectra.of_simulated.len();
+    let top = ((1.0 - TOP) * end as f64) as usize..end;
+    let mean = |lines: &Range<usize>, of: &dyn Fn(usize) -> f64| {
+        lines.clone().map(of).sum::<f64>() / lines.len() as f64
+    };
+    let left = |line: usize| (1.0 - spectra.beyond_chance(line)).max(0.0);
+    let ratio = |of: &[f64]| {
+        mean(&lines, &|line| left(line) * of[line]) / mean(&top, &|line| left(line) * of[line])
+    };
+    // A signal without any noise has no ratio.
+    let least = ratio(&spectra.of_simulated).min(ratio(&spectra.of_measured));
+    if least.is_finite() {
+        Ok(mean(&lines, &left) * least)
+    } else {
+        undefined("both signals are without noise")
+    }
+}
+
+/// What is taken away from each window.
+#[derive(Clone, Copy, PartialEq)]
+enum Trend {
+    Mean,
+    /// The regression line: the lines of a slow change would cover the noise.
+    Line,
+}
+
+/// Spectra of two signals, summed over windows.
+struct Spectra {
+    window: usize,
+    windows: usize,
+    of_simulated: Vec<f64>,
+    of_measured: Vec<f64>,
+    of_both: Vec<Complex<f64>>,
+}
+
+impl Spectra {
+    fn of(
+        (simulated, measured): (&[f64], &[f64]),
+        window: usize,
+        trend: Trend,
+    ) -> Result<Self, Undefined> {
+        let hann: Vec<f64> =
+            (0..window).map(|k| 0.5 - 0.5 * (TAU * k as f64 / window as f64).cos()).collect();
+        let transform = super::fourier::forward(window);
+        let middle = (window - 1) as f64 / 2.0;
+        let spread = (window * (window * window - 1)) as f64 / 12.0;
+        let spectrum = |part: &[f64]| -> Result<Vec<Complex<f64>>, Undefined> {
+            let mean = part.iter().sum::<f64>() / window as f64;
+            let slope = match trend {
+                Trend::Mean => 0.0,
+                Trend::Line => {
+                    let of = |(k, value): (usize, &f64)| (k as f64 - middle) * value;
+                    part.iter().enumerate().map(of).sum::<f64>() / spread
+                }
+            };
+            let line = |k: usize| mean + slope * (k as f64 - middle);
+            let values = part.iter().zip(&hann).enumerate();
+            let mut windowed: Vec<f64> =
+                values.map(|(k, (value, weight))| (value - line(k)) * weight).collect();
+            let mut found = transform.make_output_vec();
+            transform
+                .process(&mut windowed, &mut found)
+                .map_err(|error| Undefined::because(error.to_string()))?;
+            Ok(found)
+        };
+        let lines = window / 2 + 1;
+        let mut all = Self {
+            window,
+            windows: 0,
+            of_simulated: vec![0.0; lines],
+            of_measured: vec![0.0; lines],
+            of_both: vec![Complex::new(0.0, 0.0); lines],
+        };
+        // 50 % overlap.
+        for start in (0..=simulated.len() - window).step_by(window / 2) {
+            let (s, m) = (
+                spectrum(&simulated[start..start + window])?,
+                spectrum(&measured[start..start + window])?,
+            );
+            for (line, (s, m)) in s.iter().zip(&m).enumerate() {
+                all.of_simulated[line] += s.norm_sqr();
+                all.of_measured[line] += m.norm_sqr();
+                all.of_both[line] += s.conj() * m;
+            }
+            all.windows += 1;
+        }
+        Ok(all)
+    }
+
+    /// At the shift at which both agree best, with windows as long as the band needs.
+    fn aligned(
+        simulated: &[f64],
+        measured: &[f64],
+        rate: f64,
+        (low, high): (f64, f64),
+    ) -> Result<Self, Undefined> {
+        let most = (FARTHEST * simulated.len() as f64) as usize;
+        let shift = best_shift(simulated, measured, most, Agreement::Correlation)?;
+        let (simulated, measured) = overlap(simulated, measured, shift);
+        let wanted = (LINES * rate / (high - low)).ceil();
+        let least = FEWEST * SHORTEST / 2;
+        if simulated.len() < least || wanted * FEWEST as f64 / 2.0 > simulated.len() as f64 {
+            return undefined("the section is too short for eight windows");
+        }
+        let window = (wanted as usize).next_power_of_two().max(SHORTEST);
+        if window * (FEWEST + 1) / 2 > simulated.len() {
+            return undefined("the section is too short for eight windows");
+        }
+        Self::of((simulated, measured), window, Trend::Line)
+    }
+
+    /// The lines with low <= f < high.
+    fn lines(&self, rate: f64, (low, high): (f64, f64)) -> Result<Range<usize>, Undefined> {
+        let apart = rate / self.window as f64;
+        let mut all =
+            (0..=self.window / 2).filter(|&line| (low..high).contains(&(line as f64 * apart)));
+        let Some(first) = all.next() else {
+            return undefined(format!(
+                "no line of the spectrum lies in the band: the lines are {} apart",
+                super::rounded(apart)
+            ));
+        };
+        Ok(first..first + 1 + all.count())
+    }
+
+    fn coherence(&self, line: usize) -> f64 {
+        self.of_both[line].norm_sqr() / (self.of_simulated[line] * self.of_measured[line])
+    }
+
+    /// The coherence less what unrelated signals have; 0 where a signal has no content.
+    fn beyond_chance(&self, line: usize) -> f64 {
+        let chance = 1.0 / (INDEPENDENT * self.windows as f64);
+        let found = (self.coherence(line) - chance) / (1.0 - chance);
+        if found.is_finite() { found } else { 0.0 }
+    }
 }
 
 #[cfg(test)]
@@ -115,5 +256,62 @@ mod tests {
                 .contains("0.78125 apart")
         );
         assert!(in_band(&a, &vec![1.0; 300], 200.0, (1.0, 20.0)).is_err());
+    }
+
+    /// Low-pass noise with errors of a model, and white noise of the measurement.
+    fn sides(seed: u64) -> [Vec<f64>; 4] {
+        let slow = |seed| {
+            let mut state = 0.0;
+            let step = |value: f64| {
+                state += 0.1 * (value - state);
+                20.0 * state
+            };
+            noise(4000, seed).into_iter().map(step).collect::<Vec<f64>>()
+        };
+        let (track, error) = (slow(seed), slow(seed + 1));
+        let simulated: Vec<f64> = track.iter().zip(&error).map(|(a, b)| a + 0.5 * b).collect();
+        let noises = [noise(4000, seed + 2), noise(4000, seed + 3)];
+        let measured = track.iter().zip(&noises[0]).map(|(a, b)| a + b).collect();
+        let [_, other] = noises;
+        [simulated, measured, other, track]
+    }
+
+    #[test]
+    fn what_is_made_of_a_measurement_shares_its_noise() {
+        let [simulated, measured, other, _] = sides(7);
+        let of = |s: &[f64]| shared(s, &measured, 200.0, (60.0, 100.0)).expect("a number");
+        let with = |all: &[f64], by: f64| -> Vec<f64> {
+            all.iter().zip(&other).map(|(a, b)| a + by * b).collect()
+        };
+        assert!(of(&with(&simulated, 1.0)).abs() < 0.05, "{}", of(&with(&simulated, 1.0)));
+        assert!((of(&with(&measured, 1.0)) - 0.5).abs() < 0.1);
+        // Delayed, scaled and blended with the simulation.
+        let mut late = measured.clone();
+        late.rotate_right(31);
+        assert!(of(&late) > 0.99);
+        let blended: Vec<f64> =
+            measured.iter().zip(&simulated).map(|(m, s)| 0.3 * m + 0.7 * s).collect();
+        assert!(of(&blended) > 0.5, "{}", of(&blended));
+    }
+
+    #[test]
+    fn what_is_left_of_a_copy_is_white_and_the_error_of_a_model_is_not() {
+        let [simulated, measured, other, track] = sides(11);
+        let of = |s: &[f64], m: &[f64]| unexplained(s, m, 200.0, (1.0, 10.0)).expect("a number");
+        assert!(of(&simulated, &measured) > 0.4, "{}", of(&simulated, &measured));
+        let noisy = |all: &[f64]| -> Vec<f64> {
+            all.iter().zip(&other).map(|(a, b)| 1.1 * a + 0.2 + b).collect()
+        };
+        assert!(of(&noisy(&measured), &measured) < 0.1, "{}", of(&noisy(&measured), &measured));
+        assert!(of(&track, &noisy(&track)) < 0.1, "{}", of(&track, &noisy(&track)));
+    }
+
+    #[test]
+    fn a_short_section_says_so() {
+        let a = noise(100, 1);
+        let why = shared(&a, &a, 200.0, (60.0, 100.0)).expect_err("short");
+        assert!(why.reason.contains("too short"), "{why:?}");
+        let a = noise(4000, 1);
+        assert!(shared(&a, &a, 100.0, (60.0, 100.0)).is_err());
     }
 }

@@ -51,6 +51,7 @@ pub mod rank;
 pub mod reduction;
 pub mod regression;
 pub mod resample;
+pub mod robust;
 pub mod sampling;
 pub mod sinc;
 pub mod statistics;

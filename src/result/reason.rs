@@ -493,6 +493,20 @@ pub enum FindingData {
         unit: String,
         required: String,
     },
+    /// A requirement that all sections meet together is not met. The value of all, or the slope over
+    /// what is expected, with its interval, and the bounds.
+    OverSections {
+        rule: String,
+        what: String,
+        slope: bool,
+        value: f64,
+        low: f64,
+        high: f64,
+        least: Option<f64>,
+        most: Option<f64>,
+        unit: String,
+        sections: usize,
+    },
     /// Channels repeat the samples of others, or of the same channels: of another record or section
     /// if these are named.
     Copies {
@@ -575,6 +589,7 @@ impl FindingData {
     pub fn rule(&self) -> Option<&str> {
         match self {
             Self::Required { rule, .. }
+            | Self::OverSections { rule, .. }
             | Self::Copies { rule, .. }
             | Self::RuleNotChecked { rule, .. }
             | Self::Exchanged { rule, .. } => Some(rule),
@@ -587,6 +602,9 @@ impl FindingData {
         match (self, other) {
             (Self::Required { required, .. }, Self::Required { required: other_one, .. }) => {
                 self.rule() == other.rule() && required == other_one
+            }
+            (Self::OverSections { slope, .. }, Self::OverSections { slope: other_one, .. }) => {
+                self.rule() == other.rule() && slope == other_one
             }
             (Self::Copies { .. }, Self::Copies { .. })
             | (Self::RuleNotChecked { .. }, Self::RuleNotChecked { .. }) => {

@@ -88,6 +88,8 @@ pub struct Requirement {
     pub of: Looks,
     /// The comparisons of which the condition consists, where it consists of such alone.
     pub compared: Vec<Comparison>,
+    /// Where it is a requirement of all sections together, and not of each.
+    pub over_sections: Option<OverSections>,
     pub words: String,
 }
 
@@ -99,8 +101,31 @@ pub struct Comparison {
     pub expected: Expr,
     /// The unit in which both are printed.
     pub unit: Unit,
+    pub relation: Relation,
+}
+
+/// How the value found should be to the expected one.
+#[derive(Clone, Debug)]
+pub enum Relation {
+    /// So near, SI.
+    Within(Expr),
+    WithinFactor,
+    AtMost,
+    AtLeast,
+}
+
+impl Relation {
     /// Whether the value found should be about the expected one, which else is a bound.
-    pub about: bool,
+    pub fn about(&self) -> bool {
+        matches!(self, Self::Within(_) | Self::WithinFactor)
+    }
+}
+
+/// A requirement that the sections of a campaign meet together.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct OverSections {
+    /// Bounds of the slope of the values found over those expected, where it is asked for.
+    pub slope: Option<(f64, f64)>,
 }
 
 /// The records that a requirement uses.

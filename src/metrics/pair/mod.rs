@@ -10,7 +10,7 @@ mod deviation;
 mod distribution;
 mod geers;
 mod iso18571;
-mod lag;
+pub mod lag;
 mod theil;
 
 pub use alignment::{drift, mirrored_correlation, shift};

@@ -7,6 +7,7 @@
 //! | `plausibility`, `exchanged` | plausibility rules in one section |
 //! | `checks` | checks of a section on its records |
 //! | `changed` | records that are not as an import wrote them |
+//! | `over_sections` | requirements that all sections meet together |
 //! | `copies` | signals that are copies, in all sections |
 //! | `consequence` | sections that are not used, for what was found; faults that end a run |
 
@@ -16,6 +17,7 @@ mod checks;
 pub mod consequence;
 pub mod copies;
 mod exchanged;
+pub mod over_sections;
 pub mod plausibility;
 
 pub use checks::{record_checks, track_checks};

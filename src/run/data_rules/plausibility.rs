@@ -7,17 +7,24 @@ use super::consequence::consequence;
 use super::exchanged;
 use crate::check::evaluate::{flag, number, words};
 use crate::check::plan::{
-    Comparison, Exchanged, InputSide, Looks, Plausibility, Requirement, Test,
+    Comparison, Exchanged, Expr, InputSide, Looks, Plausibility, Relation, Requirement, Test,
 };
 use crate::graph::{Graph, InputNode, NodeId, PositionNodes};
 use crate::result::{Finding, FindingData, Occurrence, Reason};
 use crate::run::record::SectionWork;
 use crate::run::sections::{Known, needed};
-use crate::run::values::{NodeValues, Print, SectionValues, Sides};
+use crate::run::values::{NodeValues, Pooled, Print, SectionValues, Sides};
 use crate::units::Dimension;
 
-/// A rule at a recorded position, its nodes and the name of the position.
-type Asked<'a> = (&'a Plausibility, &'a PositionNodes, &'a str);
+/// A rule at a recorded position.
+struct Asked<'a> {
+    rule: &'a Plausibility,
+    /// Indices of the rule and of the position.
+    at: [usize; 2],
+    nodes: &'a PositionNodes,
+    /// Of the position.
+    name: &'a str,
+}
 
 /// What the rules ask of a section.
 pub struct Questions<'a>(Vec<Asked<'a>>);
@@ -42,7 +49,7 @@ impl<'a> Questions<'a> {
             for (position, (nodes, recorded)) in positions {
                 if *recorded && decided(nodes) {
                     let name = rule.signals.get(position).map_or("", |(name, _)| name.as_str());
-                    asked.push((rule, nodes, name));
+                    asked.push(Asked { rule, at: [at, position], nodes, name });
                 }
             }
         }
@@ -52,7 +59,7 @@ impl<'a> Questions<'a> {
     /// Nodes whose values the rules need, of the track record (`track`) or of the other records.
     pub fn wanted(&self, graph: &Graph, track: bool) -> BTreeSet<NodeId> {
         let mut wanted = BTreeSet::new();
-        for (rule, nodes, _) in &self.0 {
+        for Asked { rule, nodes, .. } in &self.0 {
             let of_rule = nodes.inputs.iter().flat_map(InputNode::nodes);
             wanted.extend(of_rule.filter(|&node| graph.nodes[node].track == track));
             if !track && matches!(rule.test, Test::Distinct(_) | Test::Exchanged(_)) {
@@ -72,7 +79,7 @@ pub fn look(
 ) {
     let section = sides.section;
     let mut channels: Vec<(&Plausibility, Exchanged, exchanged::Channels<'_>)> = Vec::new();
-    for &(rule, nodes, name) in &questions.0 {
+    for &Asked { rule, at, nodes, name } in &questions.0 {
         match &rule.test {
             Test::Exchanged(test) => match (nodes.own, channels.last_mut()) {
                 (Some(own), Some((of, _, list))) if std::ptr::eq(*of, rule) => {
@@ -82,8 +89,8 @@ pub fn look(
                 (None, _) => {}
             },
             Test::Require(requirement) => {
-                let at = Position { section, rule, requirement, name };
-                at.look(sides, nodes, track, &mut values.findings);
+                let position = Position { section, rule, at, requirement, name };
+                position.look(sides, nodes, track, values);
             }
             Test::Distinct(_) => {
                 for record in sides.simulated.iter().chain(sides.measured) {
@@ -106,6 +113,7 @@ pub fn look(
 struct Position<'a> {
     section: &'a SectionWork<'a>,
     rule: &'a Plausibility,
+    at: [usize; 2],
     requirement: &'a Requirement,
     name: &'a str,
 }
@@ -116,14 +124,18 @@ impl Position<'_> {
         sides: &Sides<'_>,
         nodes: &PositionNodes,
         track: &NodeValues,
-        findings: &mut Vec<Finding>,
+        values: &mut SectionValues,
     ) {
         let mut look = |value: &dyn Fn(&InputNode) -> Result<f64, Reason>, record| {
             let inputs: Vec<_> = nodes.inputs.iter().map(value).collect();
-            findings.extend(self.finding(&inputs, record));
+            if self.requirement.over_sections.is_some() {
+                values.pooled.extend(self.pooled(&inputs, record));
+            } else {
+                values.findings.extend(self.finding(&inputs, record));
+            }
         };
         match self.requirement.of {
-            Looks::Data => findings.extend(self.finding(&[], None)),
+            Looks::Data => values.findings.extend(self.finding(&[], None)),
             Looks::Track => {
                 let value = |input: &InputNode| Ok(track.number(input.node)?.0);
                 look(&value, Some("track".into()));
@@ -167,6 +179,26 @@ impl Position<'_> {
         Some(Finding { consequence, ..Finding::note(&self.rule.name, first) })
     }
 
+    /// The numbers that are compared, of those that have values.
+    fn pooled(&self, inputs: &[Result<f64, Reason>], record: Option<String>) -> Vec<Pooled> {
+        let known = Known { inputs, ..self.section.known };
+        let of = |expr: &Expr| number(expr, &known).ok().filter(|value| value.is_finite());
+        let numbers = |(which, compared): (usize, &Comparison)| {
+            let room = match &compared.relation {
+                Relation::Within(room) => of(room)?,
+                _ => 0.0,
+            };
+            Some(Pooled {
+                of: [self.at[0], self.at[1], which],
+                record: record.clone(),
+                found: of(&compared.found)?,
+                expected: of(&compared.expected)?,
+                room,
+            })
+        };
+        self.requirement.compared.iter().enumerate().filter_map(numbers).collect()
+    }
+
     /// `None` where the requirement is met, or cannot be evaluated because a datum is missing.
     fn finding(&self, inputs: &[Result<f64, Reason>], record: Option<String>) -> Option<Finding> {
         let known = Known { inputs, ..self.section.known };
@@ -180,9 +212,9 @@ impl Position<'_> {
             .compared
             .iter()
             .find(|comparison| flag(&comparison.holds, &known) == Ok(false));
-        let numbers = failing.and_then(|Comparison { found, expected, unit, about, .. }| {
+        let numbers = failing.and_then(|Comparison { found, expected, unit, relation, .. }| {
             let of = |expr| number(expr, &known).ok().map(|value| unit.from_si(value));
-            Some((of(found)?, of(expected)?, unit, words(found), *about))
+            Some((of(found)?, of(expected)?, unit, words(found), relation.about()))
         });
         // Units explain a ratio of two amounts that should be alike, not of two correlations, nor
         // of a value and a bound.

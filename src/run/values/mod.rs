@@ -69,6 +69,8 @@ pub struct SectionValues {
     pub findings: Vec<Finding>,
     /// Marks of the signals that are compared with others to find copies.
     pub prints: Vec<Print>,
+    /// What requirements of all sections together need.
+    pub pooled: Vec<Pooled>,
     pub files: Vec<FileHash>,
     /// The measured range of a whole record.
     pub extent: Option<Extent>,
@@ -78,6 +80,19 @@ pub struct SectionValues {
     pub offset: Option<Offset>,
     pub fault: Option<Reason>,
     pub problems: Vec<Problem>,
+}
+
+/// The numbers that a requirement of all sections together compares, in one section.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Pooled {
+    /// Index of the rule, of the position of its signal, and of the comparison.
+    pub of: [usize; 3],
+    /// The record, or both where there are several, in words.
+    pub record: Option<String>,
+    /// SI, as the tolerance; 0 where there is none.
+    pub found: f64,
+    pub expected: f64,
+    pub room: f64,
 }
 
 /// The shifts at which the measurement is evaluated.

@@ -5,7 +5,7 @@ use crate::check::plan::{EstimateKind, Plan};
 use crate::problem::Problems;
 use crate::result::study::Reduction;
 use crate::result::{Consequence, DomainResult, FileHash, Finding, Reason, Remark, VehicleValue};
-use crate::run::data_rules::{changed, copies, nothing_usable, stop_on_fault, take_over};
+use crate::run::data_rules::{changed, copies, nothing_usable, over_sections, stop_on_fault, take_over};
 use crate::run::describe::domain;
 use crate::run::estimate::{Group, Rows, used};
 use crate::run::limit::pool::{self, Pool};
@@ -69,12 +69,14 @@ impl Basis {
         let copies = copies::find(plan, &units, &values);
         take_over(plan, &mut units, &values, &copies, &mut notes)?;
         stop_on_fault(plan, &units, &values)?;
+        let pooled = over_sections::find(plan, &units, &values);
         let reduction = keep::keep(plan, &self.facts, &mut units, &values);
         let values = without_unused_originals(plan, &units, values);
         let findings: Vec<Finding> = values
             .iter()
             .flat_map(|values| values.findings.iter().cloned())
             .chain(copies)
+            .chain(pooled)
             .collect();
         // Sections excluded by a plausibility rule state the reason in the findings of a report.
         let refused_by_finding =

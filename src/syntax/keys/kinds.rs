@@ -360,6 +360,16 @@ pub const KINDS: &[Kind] = &[
                 "median near 2 * Q0 within a factor of 1.4",
             ),
             phrase(
+                "over",
+                "`sections`: all sections meet the condition together, and not each: the median of their values, with its uncertainty.",
+                "sections",
+            ),
+            phrase(
+                "slope",
+                "With `over sections` and `near`: between which numbers the slope of the values found over those expected must lie.",
+                "0.9 to 1.1",
+            ),
+            phrase(
                 "distinct",
                 "In place of a condition: signals that must not have the same samples.",
                 "channels, sections, sides",

@@ -1,0 +1,121 @@
+//! Requirements that the sections of a campaign meet together: the median of what is found in them,
+//! and the slope of what is found over what is expected.
+
+use indexmap::IndexMap;
+
+use super::consequence::consequence;
+use crate::check::evaluate::words;
+use crate::check::plan::{Comparison, OverSections, Plan, Plausibility, Relation, Test};
+use crate::metrics::robust::{Estimate, level, slope};
+use crate::metrics::statistics::median;
+use crate::result::{Finding, FindingData, Occurrence, Reason};
+use crate::run::sections::Unit;
+use crate::run::values::{Pooled, SectionValues};
+
+/// Least number of sections: of fewer, the scatter of a median is not known.
+const FEWEST: usize = 5;
+
+/// The rule, the position, the comparison, the record, and the campaign where there are several.
+type Key<'a> = ([usize; 3], Option<&'a str>, Option<&'a str>);
+
+/// A finding for each requirement that the used sections do not meet.
+pub fn find(plan: &Plan, units: &[Unit], values: &[SectionValues]) -> Vec<Finding> {
+    let mut groups: IndexMap<Key<'_>, Vec<&Pooled>> = IndexMap::new();
+    for (unit, values) in units.iter().zip(values).filter(|(unit, _)| unit.fault.is_none()) {
+        for one in &values.pooled {
+            let key = (one.of, one.record.as_deref(), unit.campaign_name.as_deref());
+            groups.entry(key).or_default().push(one);
+        }
+    }
+    let mut all: Vec<_> = groups.into_iter().filter(|(_, of)| of.len() >= FEWEST).collect();
+    all.sort_by_key(|((of, ..), _)| *of);
+    all.into_iter().filter_map(|(key, of)| finding(plan, key, &of)).collect()
+}
+
+fn finding(
+    plan: &Plan,
+    ([rule, position, which], record, campaign): Key<'_>,
+    of: &[&Pooled],
+) -> Option<Finding> {
+    let rule = plan.plausibility.get(rule)?;
+    let Test::Require(requirement) = &rule.test else { return None };
+    let compared = requirement.compared.get(which)?;
+    let violated = violated(requirement.over_sections?, compared, of)?;
+    let data = data((rule, compared), of.len(), &violated);
+    let first = Occurrence {
+        channel: rule.signals.get(position).map(|(name, _)| name.clone()),
+        campaign: campaign.map(Into::into),
+        record: record.map(Into::into),
+        ..Occurrence::from(data)
+    };
+    Some(Finding {
+        cause: rule.cause.clone().map(Reason::said),
+        consequence: consequence(rule.otherwise),
+        ..Finding::note(&rule.name, first)
+    })
+}
+
+/// What is not as it must be, SI, and the bounds.
+struct Violated {
+    slope: bool,
+    found: Estimate,
+    least: Option<f64>,
+    most: Option<f64>,
+}
+
+/// What is required and lies outside its bounds with its whole interval, the slope first.
+fn violated(asked: OverSections, compared: &Comparison, of: &[&Pooled]) -> Option<Violated> {
+    let list = |take: fn(&Pooled) -> f64| of.iter().map(|one| take(one)).collect::<Vec<f64>>();
+    let (found, expected) = (list(|one| one.found), list(|one| one.expected));
+    let bounds = median(&expected)?;
+    let over =
+        |by: f64| list(|one| one.found).iter().zip(&expected).map(|(f, e)| f - by * e).collect();
+    let outside = |slope: bool, found: Estimate, least: Option<f64>, most: Option<f64>| {
+        let beyond = most.is_some_and(|most| found.low > most)
+            || least.is_some_and(|least| found.high < least);
+        beyond.then_some(Violated { slope, found, least, most })
+    };
+    match &compared.relation {
+        Relation::AtMost => outside(false, level(&found)?, None, Some(bounds)),
+        Relation::AtLeast => outside(false, level(&found)?, Some(bounds), None),
+        Relation::WithinFactor => None,
+        Relation::Within(_) => {
+            let mut by = 1.0;
+            if let Some((least, most)) = asked.slope
+                && let Some(steep) = slope(&expected, &found)
+            {
+                if let Some(violated) = outside(true, steep, Some(least), Some(most)) {
+                    return Some(violated);
+                }
+                by = steep.value;
+            }
+            let room = median(&list(|one| one.room))?;
+            let off: Vec<f64> = over(by);
+            outside(false, level(&off)?, Some(-room), Some(room))
+        }
+    }
+}
+
+fn data(
+    (rule, compared): (&Plausibility, &Comparison),
+    sections: usize,
+    of: &Violated,
+) -> FindingData {
+    let what = words(&compared.found);
+    let shown = |value: f64| if of.slope { value } else { compared.unit.from_si(value) };
+    FindingData::OverSections {
+        rule: rule.title.clone(),
+        what: match compared.relation {
+            Relation::Within(_) if !of.slope => format!("{what} - {}", words(&compared.expected)),
+            _ => what,
+        },
+        slope: of.slope,
+        value: shown(of.found.value),
+        low: shown(of.found.low),
+        high: shown(of.found.high),
+        least: of.least.map(shown),
+        most: of.most.map(shown),
+        unit: if of.slope { String::new() } else { compared.unit.text.clone() },
+        sections,
+    }
+}
