@@ -474,6 +474,110 @@ plausibility track_cant "Cant of the track file against the table"
   otherwise  not used
   cause      "cant or direction of the section, or the track file of another section"
 
+plausibility hum "Line of a fixed frequency"
+  of       Y
+  of       ay
+  require  measured(line) <= larger of 250, 15 * siblings(measured(line))
+  cause    "interference of a fixed frequency, such as that of the mains or of the traction current"
+  note     "A resonance reaches 130 times the lines around it, or shows in the neighbours as well."
+
+plausibility hum_vertical "Line of a fixed frequency"
+  of       Q
+  of       az
+  require  measured(line) <= larger of 250, 15 * siblings(measured(line))
+           or (measured(line_length) >= 2.4 m and measured(line_length) <= 4 m)
+           or (measured(line_length) >= 1.2 m and measured(line_length) <= 2 m)
+  cause    "interference of a fixed frequency, such as that of the mains or of the traction current"
+  note     "A wheel that is out of round has a line at its circumference or half of it: 2.4 m to 4 m are"
+           "wheels of 0.76 m to 1.27 m."
+
+plausibility repeated_samples "Repeated samples"
+  of         Y
+  of         Q
+  of         ay
+  of         az
+  require    repeated <= 25 %
+  otherwise  not used
+  cause      "a lower sampling rate of the source: each value was written several times"
+  note       "At most 10 % in sound campaigns, 50 % where each value stands twice."
+
+plausibility clipped "Peaks cut off"
+  of         Y
+  of         Q
+  of         ay
+  of         az
+  require    piled_up <= 0.5 % or resolution > 0.08 * std or held >= 0.8 * at_extreme
+             or piled_up <= 3 * siblings(piled_up)
+  otherwise  not used
+  cause      "a recorder or sensor at the end of its range: peaks are cut off"
+  note       "In 78 sound campaigns at 200 Hz at most 0.4 %. Clipping that moves a percentile by a tenth of"
+             "its limit piles up 0.6 % or more. A coarse signal has several samples at its largest value."
+
+plausibility spikes "Samples out of line"
+  of         Y
+  of         Q
+  of         ay
+  of         az
+  require    spike <= larger of (larger of 9 * noise_floor, 1.3 * std), 3 * siblings(spike)
+             or resolution > 0.3 * std or repeated > 25 %
+  otherwise  not used
+  cause      "spikes, or a short dropout: single samples that do not belong to the signal"
+  note       "In 78 sound campaigns single samples reach 1.2 standard deviations and 12 times the noise."
+             "Shocks at joints and switches do more, but in half of the wheels. A spike that moves a"
+             "percentile by a tenth of its limit reaches 5 standard deviations and 20 times the noise."
+
+plausibility interrupted "Gaps that were filled"
+  of         Y
+  of         Q
+  of         ay
+  of         az
+  require    smooth_stretch <= larger of 16, 3 * siblings(smooth_stretch) or resolution > 0.3 * std
+             or repeated > 25 %
+  otherwise  not used
+  cause      "a dropout, or a gap that was filled with a value, a straight line or a curve"
+  note       "In 78 sound campaigns measured channels follow a smooth curve over at most 13 samples,"
+             "simulated ones over 21, with neighbours alike."
+
+plausibility filtered "Noise below that of the neighbours"
+  of       Y
+  of       Q
+  of       ay
+  of       az
+  require  measured(noise_floor) >= 0.25 * siblings(measured(noise_floor))
+           or measured(resolution) > 0.3 * measured(std) or measured(repeated) > 25 %
+  cause    "a filter or a smoothing that the other channels did not pass"
+  note     "In 78 sound campaigns a channel has at least 56 % of the noise of its neighbours, a smoothed one"
+           "at most 11 %."
+
+plausibility noisy "Noise above that of the neighbours"
+  of       Q
+  of       ay
+  of       az
+  require  measured(noise_floor) <= 2.2 * siblings(measured(noise_floor)) or measured(line) > 250
+  cause    "noise or interference of the measuring chain of this channel"
+  note     "In 78 sound campaigns at most 1.8 times."
+
+plausibility noisy_guiding "Noise above that of the neighbours"
+  of       Y
+  require  measured(noise_floor) <= 3.5 * siblings(measured(noise_floor))
+  cause    "noise or interference of the measuring chain of this channel"
+  note     "Guiding wheels hit the rail more often than others: at most 2.7 times in 78 sound campaigns."
+
+plausibility noisy_simulation "Noise above that of the neighbours"
+  of       Y
+  of       Q
+  of       ay
+  of       az
+  require  simulated(noise_floor) <= 5 * siblings(simulated(noise_floor))
+  cause    "noise that was added to a simulated channel"
+  note     "In 78 sound campaigns at most 3.8 times."
+
+plausibility unloaded "Vertical wheel force near zero"
+  of       Q
+  require  minimum >= 0.05 * Q0
+  cause    "a dropout of the vertical force, or a wheel that lifts: the ratio Y/Q has no meaning there"
+  note     "A ratio is not defined where its denominator comes near zero."
+
 plausibility noise "Noise of a channel"
   of       Q
   of       ay

@@ -11,23 +11,27 @@ protocol plausibility-signals "Plausibility of the channels that quantities read
 
 plausibility live "Constant channel"
   of         every channel
-  require    held <= 5 %
+  require    held <= 5 % or resolution > 0.3 * std
   otherwise  not used
   cause      "a channel without a signal, or an interrupted one"
   note       "In a working channel, the longest run of equal samples is at most 2 % of a section."
 
 plausibility saturated "Saturated channel"
   of         every channel
-  require    at_extreme <= 2 %
+  require    at_extreme <= 2 % or held >= 0.8 * at_extreme or resolution > 0.3 * std
   otherwise  not used
   cause      "a recorder or sensor at the end of its range"
-  note       "A working channel is at its largest or smallest value in less than 1 % of the samples."
+  note       "A working channel is at its largest or smallest value in less than 1 % of the samples. A single"
+             "run of equal values is a dropout, which `interrupted` and `live` tell."
 
 plausibility coarse "Channel with coarse resolution"
-  of       every channel
-  require  resolution <= 0.15 * std
-  cause    "insufficient resolution of the recorder, or too few decimals"
-  note     "Steps of 15 % of the standard deviation increase it by 0.1 % and distort percentiles."
+  of         every channel
+  require    resolution <= 0.3 * std
+  otherwise  not used
+  cause      "insufficient resolution of the recorder, or too few decimals"
+  note       "Steps of 30 % of the standard deviation increase it by 0.4 % and distort percentiles. Forces"
+             "with one decimal and accelerations with two have steps of up to 15 % on good track. A line of a"
+             "fixed frequency has large changes as well."
 
 plausibility exchanged "Exchanged channels"
   of         every channel

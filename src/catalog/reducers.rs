@@ -3,6 +3,7 @@
 use crate::metrics::cluster::{mean_interval, standard_deviation_interval};
 use crate::metrics::percentile::{Method, percentile};
 use crate::metrics::sampling;
+use crate::metrics::spectrum::strongest_line;
 use crate::metrics::statistics::{self, Divisor};
 use crate::units::Dimension;
 
@@ -41,12 +42,12 @@ const fn same(
 }
 
 macro_rules! share {
-    ($name:literal, $about:literal, $run:path) => {
+    ($name:literal, $about:literal, $run:expr) => {
         ReducerEntry {
             name: $name,
             about: $about,
             gives: |_, _| Dimension::ONE,
-            run: |_, x| $run(x),
+            run: |_, x| ($run)(x),
         }
     };
 }
@@ -83,6 +84,41 @@ pub const REDUCERS: &[ReducerEntry] = &[
         "Standard deviation of the part that changes from sample to sample: for white noise its standard deviation, near 0 for a smooth signal.",
         |_, x| sampling::noise_floor(x),
     ),
+    same(
+        "spike",
+        "Largest height of a single sample above or below what its neighbours lead to; of a jump the half.",
+        |_, x| sampling::spike(x),
+    ),
+    share!(
+        "smooth_stretch",
+        "Number of samples of the longest stretch that follows a straight line or a smooth curve, where the signal as a whole does not.",
+        sampling::smooth_stretch
+    ),
+    share!(
+        "repeated",
+        "Share of the samples that repeat the one before, where the signal else changes by more than a step of its resolution.",
+        sampling::repeated_share
+    ),
+    share!(
+        "piled_up",
+        "Share of the samples piled up at the largest or smallest value, beyond what the values next to it hold.",
+        sampling::piled_up
+    ),
+    share!(
+        "line",
+        "Largest peak of the spectrum that is a single line, over the median of the lines around it.",
+        |x| Some(strongest_line(x)?.0)
+    ),
+    ReducerEntry {
+        name: "line_length",
+        about: "Wavelength of that line, in the unit of the axis.",
+        gives: |_, axis| axis,
+        run: |axis, x| {
+            let (_, frequency) = strongest_line(x)?;
+            let step = (axis.last()? - axis.first()?) / (axis.len() - 1) as f64;
+            Some(step / frequency).filter(|length| length.is_finite())
+        },
+    },
     same("first", "First sample of the section.", |_, x| x.first().copied()),
     same("last", "Last sample of the section.", |_, x| x.last().copied()),
     ReducerEntry {

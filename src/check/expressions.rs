@@ -129,6 +129,9 @@ impl Checker<'_> {
             {
                 return self.on_side(name, arguments, &span, scope);
             }
+            Node::Call(name, arguments) if !scope.samples && name.node == "siblings" => {
+                return self.of_siblings(arguments, &span, scope);
+            }
             Node::Call(name, arguments) if self.metric_called(name, scope) => {
                 return self.metric_call(name, arguments, &span, scope);
             }

@@ -241,8 +241,11 @@ impl Checker<'_> {
         let phrase = from_pest::expression(&field.value, self.problems)?;
         let axis = self.axis_dimension();
         let own = signals.first().map(|(_, signal)| after(chain, signal.dimension()));
-        let mut scope =
-            Scope { factor: after(chain, Dimension::ONE), ..Scope::comparing(own, axis) };
+        let mut scope = Scope {
+            factor: after(chain, Dimension::ONE),
+            siblings: own.is_some(),
+            ..Scope::comparing(own, axis)
+        };
         let (holds, compared) = self.compared(&phrase, &mut scope)?;
         self.flag_type(&holds)?;
         self.inputs_of_one_record(&scope.inputs)?;

@@ -157,6 +157,34 @@ impl Checker<'_> {
         found
     }
 
+    /// The same number of the other positions of a plausibility rule: `siblings(noise_floor)`.
+    pub fn of_siblings(
+        &mut self,
+        arguments: &[Phrase],
+        span: &Origin,
+        scope: &mut Scope,
+    ) -> Option<Expr> {
+        let inputs = scope.inputs.len();
+        if let ([argument], true) = (arguments, scope.siblings) {
+            let found = self.expr(argument, scope)?;
+            if let (Kind::Input(at), [_, ..]) = (&found.kind, scope.inputs.get(inputs..)?)
+                && scope.inputs[*at].signal.is_none()
+            {
+                scope.inputs[*at].siblings = true;
+                scope.inputs[*at].span = span.span.clone();
+                return Some(Expr { span: span.clone(), ..found });
+            }
+        }
+        self.refuse(
+            problem!(
+                "siblings",
+                span,
+                "`siblings(...)` must contain one value of the signal of a plausibility rule"
+            )
+            .help("write the rule with `of`, and for example `siblings(noise_floor)`"),
+        )
+    }
+
     /// What a name stands for in an expression of numbers, words and conditions.
     pub fn path(&mut self, path: &str, span: &Origin, scope: &mut Scope) -> Option<Expr> {
         let expr = |kind, ty| Some(Expr { kind, ty, span: span.clone() });

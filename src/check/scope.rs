@@ -32,6 +32,8 @@ pub struct Scope {
     /// Dimension of the own signal after its filter divided by that before.
     pub factor: Dimension,
     pub inputs: Vec<Input>,
+    /// Whether there are other positions, of which a value can be taken.
+    pub siblings: bool,
     /// Words that stand for themselves, where the value is one of them.
     pub words: Vec<String>,
 }
@@ -153,6 +155,7 @@ fn number(index: usize, dimension: Dimension, span: &Origin) -> Expr {
 impl Input {
     /// A number that is taken from the own signal.
     pub fn own(taken: Taken, side: InputSide, span: &Span) -> Self {
-        Self { taken, signal: None, chain: Vec::new(), over: None, side, span: span.clone() }
+        let (signal, chain, over, span) = (None, Vec::new(), None, span.clone());
+        Self { taken, signal, chain, over, side, siblings: false, span }
     }
 }

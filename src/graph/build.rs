@@ -179,7 +179,7 @@ impl Builder {
                 )
             }
         };
-        InputNode { node, side: input.side, joint }
+        InputNode { node, side: input.side, siblings: input.siblings, joint }
     }
 
     fn find(&mut self, plan: &Plan) -> FindNodes {

@@ -259,6 +259,8 @@ pub struct InputNode {
     /// A value, or the signal of both sides from which a value is taken.
     pub node: NodeId,
     pub side: InputSide,
+    /// Whether it is taken at the other positions of the rule.
+    pub siblings: bool,
     pub joint: Option<Joint>,
 }
 

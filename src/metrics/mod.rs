@@ -16,7 +16,8 @@
 //! | [`reduction`] | groups of members and their scatter | fewer members with nearly the same scatter |
 //! | [`regression`] | values and regressors | least squares, bounds at a point |
 //! | [`student`] | probability | quantiles of Student's t |
-//! | [`sampling`] | values | signs of recording faults: held, saturated, quantised |
+//! | [`sampling`] | values | signs of recording faults: held, saturated, quantised, spikes, gaps |
+//! | [`spectrum`] | values | single lines: interference |
 //! | [`pair`] | simulated and measured signal | measures of agreement |
 //! | [`hull`] | points | the nearest point of their convex hull, its corners |
 //! | [`random_effects`] | estimates with variances | the variance between them |
@@ -54,6 +55,7 @@ pub mod resample;
 pub mod robust;
 pub mod sampling;
 pub mod sinc;
+pub mod spectrum;
 pub mod statistics;
 pub mod student;
 mod sum;

@@ -1,6 +1,6 @@
 //! How a signal was recorded: held values, saturation, quantisation, noise.
 
-use super::statistics::median;
+use super::statistics::{Divisor, median, standard_deviation};
 
 /// Share of the samples in the longest run of equal values: near 0 for a signal that varies, 1 for
 /// a constant one.
@@ -51,17 +51,115 @@ pub fn resolution(values: &[f64]) -> Option<f64> {
 ///
 /// `None` for fewer than nine samples, or with one that is not finite.
 pub fn noise_floor(values: &[f64]) -> Option<f64> {
-    /// Samples of which the median of the differences is taken at least.
-    const LEAST: usize = 9;
     /// Standard deviation of the fourth difference of white noise: the root of 1 + 16 + 36 + 16 +
     /// 1.
     const OF_DIFFERENCE: f64 = 8.366_600_265_340_756;
     /// Median magnitude of a normal distribution.
     const MEDIAN: f64 = 0.674_489_750_196_082;
-    ends(values).filter(|_| values.len() >= LEAST)?;
-    let fourth = |[a, b, c, d, e]: &[f64; 5]| (a - 4.0 * b + 6.0 * c - 4.0 * d + e).abs();
-    let differences: Vec<f64> = values.array_windows().map(fourth).collect();
-    median(&differences).map(|middle| middle / (MEDIAN * OF_DIFFERENCE))
+    median(&fourth_differences(values)?).map(|middle| middle / (MEDIAN * OF_DIFFERENCE))
+}
+
+/// By how much a single sample is out of line with two neighbours on either side, at most, in the
+/// unit of the samples: the height of a spike. A jump counts with half its height, a peak that
+/// rises over several samples with less.
+///
+/// `None` for fewer than nine samples, or with one that is not finite.
+pub fn spike(values: &[f64]) -> Option<f64> {
+    /// The weight of the middle sample in a fourth difference.
+    const OF_MIDDLE: f64 = 6.0;
+    let largest = fourth_differences(values)?.into_iter().fold(0.0, f64::max);
+    Some(largest / OF_MIDDLE)
+}
+
+/// The number of samples of the longest stretch that follows a smooth curve while the signal as a
+/// whole does not: a gap that was filled with a value, a straight line or a spline. The fourth
+/// differences of such curves are zero but for rounding.
+///
+/// `None` for fewer than nine samples, with one that is not finite, or where most of the signal is
+/// smooth.
+pub fn smooth_stretch(values: &[f64]) -> Option<f64> {
+    /// What counts as smooth, as a share of the median of the differences: of white noise, one
+    /// difference in ten is that small, and ten in a row are one in 10^10.
+    const SMOOTH: f64 = 0.2;
+    let differences = fourth_differences(values)?;
+    let most = SMOOTH * median(&differences).filter(|middle| *middle > 0.0)?;
+    let (mut longest, mut run) = (0_usize, 0);
+    for difference in &differences {
+        run = if *difference <= most { run + 1 } else { 0 };
+        longest = longest.max(run);
+    }
+    Some((longest + WINDOW - 1) as f64)
+}
+
+/// Samples of a fourth difference.
+const WINDOW: usize = 5;
+
+/// Their magnitudes; of nine samples at least, for a median.
+fn fourth_differences(values: &[f64]) -> Option<Vec<f64>> {
+    ends(values).filter(|_| values.len() >= 2 * WINDOW - 1)?;
+    let fourth = |[a, b, c, d, e]: &[f64; WINDOW]| (a - 4.0 * b + 6.0 * c - 4.0 * d + e).abs();
+    Some(values.array_windows().map(fourth).collect())
+}
+
+/// Share of the samples that repeat the one before, where the signal changes by more than a step of
+/// its resolution otherwise: near 0 for a signal that varies or that is only coarse, 0.75 for one in
+/// which each value was written four times.
+///
+/// `None` without samples, or with one that is not finite.
+pub fn repeated_share(values: &[f64]) -> Option<f64> {
+    /// A change is larger than a step from here on, in steps.
+    const MORE: f64 = 1.5;
+    let step = resolution(values)?;
+    let (mut equal, mut more) = (0_usize, 0_usize);
+    for [before, value] in values.array_windows() {
+        let change = (value - before).abs();
+        equal += usize::from(change < step / 2.0);
+        more += usize::from(change > MORE * step);
+    }
+    let changes = values.len().saturating_sub(1);
+    let changed = changes - equal;
+    Some(if changed == 0 {
+        0.0
+    } else {
+        equal as f64 / changes as f64 * more as f64 / changed as f64
+    })
+}
+
+/// Share of the samples that are piled up at the largest or at the smallest value, the larger of
+/// both: those at the value itself beyond twice as many as any of the three steps before it hold. A
+/// step is that of the resolution, or 2 % of the standard deviation. A signal that turns by itself
+/// has its samples spread over the last steps.
+///
+/// `None` without samples, or with one that is not finite.
+pub fn piled_up(values: &[f64]) -> Option<f64> {
+    /// Width of a step, as a share of the standard deviation.
+    const WIDTH: f64 = 0.02;
+    /// Steps that are compared.
+    const STEPS: usize = 3;
+    /// A pile holds more than this many times the samples of a step ...
+    const MORE: f64 = 2.0;
+    /// ... and one sample, since every signal has a largest value.
+    const LEAST: f64 = 1.0;
+    let (least, greatest) = ends(values)?;
+    let step = resolution(values)?;
+    let width = step.max(WIDTH * standard_deviation(values, Divisor::Population)?);
+    if width <= 0.0 {
+        return Some(0.0);
+    }
+    let pile = |end: f64| {
+        let (mut at_end, mut before) = (0_usize, [0_usize; STEPS]);
+        for value in values {
+            let from = (value - end).abs() - step / 2.0;
+            if from < 0.0 {
+                at_end += 1;
+            } else if let Some(count) = before.get_mut((from / width) as usize) {
+                *count += 1;
+            }
+        }
+        let most = before.into_iter().max().unwrap_or(0);
+        at_end as f64 - MORE * most as f64 - LEAST
+    };
+    Some(pile(least).max(pile(greatest)).max(0.0) / values.len() as f64)
 }
 
 /// Relative to the largest value; smaller changes count as none.
@@ -158,6 +256,83 @@ mod tests {
             damaged[count / 2] = f64::NAN;
             assert_eq!((share_at_extreme(&damaged), resolution(&damaged)), (None, None));
         }
+    }
+
+    /// A wave of 5 with noise of +-0.05, and the same with a fault.
+    fn noisy_wave(count: usize) -> Vec<f64> {
+        let noise = |at: usize| 0.1 * ((at * 7919 % 1009) as f64 / 1009.0 - 0.5);
+        (0..count).map(|at| 5.0 * (at as f64 * 0.05).sin() + noise(at)).collect()
+    }
+
+    /// A single sample counts with its height, a jump with half of it, and a peak over several
+    /// samples with less.
+    #[test]
+    fn the_height_of_a_spike() {
+        let wave = noisy_wave(1000);
+        let with = |change: &dyn Fn(usize) -> f64| {
+            let changed: Vec<f64> =
+                wave.iter().enumerate().map(|(at, value)| value + change(at)).collect();
+            spike(&changed).expect("finite")
+        };
+        assert!(with(&|_| 0.0) < 0.15);
+        let single = with(&|at| if at == 400 { 4.0 } else { 0.0 });
+        assert!((single - 4.0).abs() < 0.15, "{single}");
+        let jump = with(&|at| if at >= 400 { 4.0 } else { 0.0 });
+        assert!((jump - 2.0).abs() < 0.15, "{jump}");
+        let peak = with(&|at| 4.0 * (-((at as f64 - 400.0) / 4.0).powi(2)).exp());
+        assert!(peak < 0.3, "{peak}");
+        assert_eq!(
+            (spike(&[1.0; 8]), spike(&[f64::NAN; 20]), spike(&[1.0; 9])),
+            (None, None, Some(0.0))
+        );
+    }
+
+    /// A gap of forty samples that was filled with a value, a line or a parabola.
+    #[test]
+    fn a_gap_that_was_filled() {
+        let wave = noisy_wave(1000);
+        let filled = |with: &dyn Fn(f64) -> f64| {
+            let mut values = wave.clone();
+            for (at, value) in values[300..340].iter_mut().enumerate() {
+                *value = with(at as f64);
+            }
+            smooth_stretch(&values).expect("finite")
+        };
+        for with in [&(|_| 1.0) as &dyn Fn(f64) -> f64, &|at| 0.1 * at, &|at| 0.01 * at * at] {
+            assert!((40.0..46.0).contains(&filled(with)), "{}", filled(with));
+        }
+        assert!(smooth_stretch(&wave).is_some_and(|longest| longest < 14.0));
+        // Most of it is smooth: no stretch stands out.
+        assert_eq!(smooth_stretch(&[2.0; 50]), None);
+    }
+
+    /// Each value written four times; a coarse signal repeats its values, too, but changes by one
+    /// step.
+    #[test]
+    fn values_that_were_repeated() {
+        let wave = noisy_wave(1000);
+        let stairs: Vec<f64> = (0..1000).map(|at| wave[at / 4 * 4]).collect();
+        let coarse: Vec<f64> = wave.iter().map(|value| (value / 0.5).round() * 0.5).collect();
+        assert!(repeated_share(&stairs).is_some_and(|share| (0.7..=0.75).contains(&share)));
+        assert!(repeated_share(&wave).is_some_and(|share| share < 0.02));
+        assert!(repeated_share(&coarse).is_some_and(|share| share < 0.1));
+        assert_eq!((repeated_share(&[]), repeated_share(&[1.0; 9])), (None, Some(0.0)));
+    }
+
+    /// The highest tenth of a wave cut off: its samples at the bound, less twice those of a step.
+    #[test]
+    fn peaks_that_were_cut_off() {
+        let wave = noisy_wave(1000);
+        let mut sorted = wave.clone();
+        sorted.sort_by(f64::total_cmp);
+        let clipped = |share: f64| {
+            let bound = sorted[(1000.0 * (1.0 - share)) as usize];
+            let values: Vec<f64> = wave.iter().map(|value| value.min(bound)).collect();
+            piled_up(&values).expect("finite")
+        };
+        assert!((0.05..=0.1).contains(&clipped(0.1)), "{}", clipped(0.1));
+        assert!(piled_up(&wave).is_some_and(|share| share < 0.002));
+        assert_eq!((piled_up(&[]), piled_up(&[4.0; 10])), (None, Some(0.0)));
     }
 
     #[test]

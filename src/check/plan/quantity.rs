@@ -24,6 +24,8 @@ pub struct Input {
     /// The signal that a slope or a metric uses in place of the axis.
     pub over: Option<Expr>,
     pub side: InputSide,
+    /// Whether it is that of the other positions of the rule: their upper quartile.
+    pub siblings: bool,
     pub span: Span,
 }
 

@@ -10,6 +10,7 @@ use crate::check::plan::{
     Comparison, Exchanged, Expr, InputSide, Looks, Plausibility, Relation, Requirement, Test,
 };
 use crate::graph::{Graph, InputNode, NodeId, PositionNodes};
+use crate::metrics::percentile::{Method, percentile};
 use crate::result::{Finding, FindingData, Occurrence, Reason};
 use crate::run::record::SectionWork;
 use crate::run::sections::{Known, needed};
@@ -89,7 +90,11 @@ pub fn look(
                 (None, _) => {}
             },
             Test::Require(requirement) => {
-                let position = Position { section, rule, at, requirement, name };
+                let others = questions.0.iter().filter(|other| std::ptr::eq(other.rule, rule));
+                let siblings =
+                    others.map(|other| other.nodes).filter(|other| !std::ptr::eq(*other, nodes));
+                let siblings = siblings.collect();
+                let position = Position { section, rule, at, requirement, siblings, name };
                 position.look(sides, nodes, track, values);
             }
             Test::Distinct(_) => {
@@ -115,8 +120,14 @@ struct Position<'a> {
     rule: &'a Plausibility,
     at: [usize; 2],
     requirement: &'a Requirement,
+    /// The nodes of the other positions of the rule.
+    siblings: Vec<&'a PositionNodes>,
     name: &'a str,
 }
+
+/// Which percentile of the other positions `siblings(...)` is. What happens at one rail shows in
+/// half of the wheels, that is in three of the seven others; a fault of one channel in none.
+const OF_SIBLINGS: f64 = 75.0;
 
 impl Position<'_> {
     fn look(
@@ -127,7 +138,15 @@ impl Position<'_> {
         values: &mut SectionValues,
     ) {
         let mut look = |value: &dyn Fn(&InputNode) -> Result<f64, Reason>, record| {
-            let inputs: Vec<_> = nodes.inputs.iter().map(value).collect();
+            let of_siblings = |at: usize| {
+                let of = |nodes: &&PositionNodes| value(nodes.inputs.get(at)?).ok();
+                let others: Vec<f64> = self.siblings.iter().filter_map(of).collect();
+                percentile(&others, OF_SIBLINGS, Method::Linear).map_err(|_| Reason::NoSignalHere)
+            };
+            let input = |(at, input): (usize, &InputNode)| {
+                if input.siblings { of_siblings(at) } else { value(input) }
+            };
+            let inputs: Vec<_> = nodes.inputs.iter().enumerate().map(input).collect();
             if self.requirement.over_sections.is_some() {
                 values.pooled.extend(self.pooled(&inputs, record));
             } else {
