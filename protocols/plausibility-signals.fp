@@ -30,8 +30,7 @@ plausibility coarse "Channel with coarse resolution"
   otherwise  not used
   cause      "insufficient resolution of the recorder, or too few decimals"
   note       "Steps of 30 % of the standard deviation increase it by 0.4 % and distort percentiles. Forces"
-             "with one decimal and accelerations with two have steps of up to 15 % on good track. A line of a"
-             "fixed frequency has large changes as well."
+             "with one decimal and accelerations with two have steps of up to 15 % on good track."
 
 plausibility exchanged "Exchanged channels"
   of         every channel
