@@ -206,7 +206,7 @@ fn poppler_shows_the_parts_of_the_standards() {
     }
     let Some(files) = told("pdfdetach", &["-list", "PDF"]) else { return };
     assert!(
-        files.contains("4 embedded files")
+        files.contains("5 embedded files")
             && files.contains("results.json")
             && files.contains("protocol-2-p.fp"),
         "{files}"

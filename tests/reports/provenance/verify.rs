@@ -37,7 +37,7 @@ fn what_was_written_agrees_from_every_side() {
     }
     let pages = verify(&written.pdf(), Some(&campaign), &["--jobs", "1"]);
     assert!(check(&pages, "pages").contains("byte for byte"), "{}", pages.stdout);
-    assert!(check(&pages, "protocol text").contains("3 files"), "{}", pages.stdout);
+    assert!(check(&pages, "protocol text").contains("4 files"), "{}", pages.stdout);
     let folder = verify(&written.out(), None, &[]);
     assert!(
         check(&folder, "statement").starts_with("agrees")
