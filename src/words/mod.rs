@@ -133,7 +133,9 @@ mod tests {
     use serde::de::DeserializeOwned;
 
     use super::*;
-    use crate::result::{Channels, FindingData, ProtocolOrigin, Reason, Remark, Sections, Unmatched, VehicleValue};
+    use crate::result::{
+        Channels, FindingData, ProtocolOrigin, Reason, Remark, Sections, Unmatched, VehicleValue,
+    };
 
     /// A value for a field, whatever its type: the first that fits.
     const FITS: [&str; 14] = [

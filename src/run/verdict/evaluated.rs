@@ -5,7 +5,9 @@ use crate::check::plan::{EstimateKind, Plan};
 use crate::problem::Problems;
 use crate::result::study::Reduction;
 use crate::result::{Consequence, DomainResult, FileHash, Finding, Reason, Remark, VehicleValue};
-use crate::run::data_rules::{changed, copies, nothing_usable, over_sections, stop_on_fault, take_over};
+use crate::run::data_rules::{
+    changed, copies, nothing_usable, over_sections, stop_on_fault, take_over,
+};
 use crate::run::describe::domain;
 use crate::run::estimate::{Group, Rows, used};
 use crate::run::limit::pool::{self, Pool};
