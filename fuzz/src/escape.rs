@@ -67,6 +67,7 @@ fn small(text: &str) -> String {
         title: text.into(),
         program: "",
         issued: None,
+        draft: false,
         cover: None,
         chapters: vec![Chapter::new("chapter", text, blocks)],
     };

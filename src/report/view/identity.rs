@@ -114,7 +114,7 @@ fn values(found: &Certification) -> Vec<Block> {
     if rows.is_empty() {
         return Vec::new();
     }
-    let about = "The protocol does not have these values from a checked source, or they were set in place of its own. The verdict is provisional until each is confirmed for this edition of the protocol (campaign.yaml, `confirmed`).";
+    let about = "The protocol does not have these values from a checked source, or they were set in place of its own. The verdict is provisional until each is confirmed for this edition of the protocol (“confirmed” in campaign.yaml).";
     let columns = vec![
         Column::text("Value of").wide(1.6),
         Column::text("Value").wide(1.0),
