@@ -45,6 +45,7 @@ pub mod source;
 pub mod store;
 pub mod study;
 pub mod syntax;
+pub mod terminal;
 pub mod units;
 pub mod values;
 pub mod words;

@@ -95,10 +95,20 @@ pub fn for_import(mapping: &Mapping, problems: &mut Problems) -> Option<Option<C
     let before = problems.errors();
     let made = NotWritten::new(mapping, problems)?;
     let Some(named) = &mapping.protocol else { return Some(None) };
-    let source = library::find(&named.value, Some(&mapping.folder))
-        .map_err(|problem| problems.push(problem.at(&named.span)))
-        .ok()?;
-    let family = read(&source, &library::parent, problems);
+    let source = match library::shipped(&named.value) {
+        Some(source) => source,
+        None => problems.value(
+            mapping.paths.read_text(named).map(|(source, _)| source).map_err(|problem| {
+                let suggest = problem.code == "file-missing" && problem.near.is_none();
+                if suggest { problem.suggest(&named.value, library::names()) } else { problem }
+            }),
+        )?,
+    };
+    let parent = |name: &str, from: &Source| match library::shipped(name) {
+        Some(shipped) => Ok(shipped),
+        None => mapping.paths.parent(name, from, &named.span),
+    };
+    let family = read(&source, &parent, problems);
     let overrides = overrides(&[], std::slice::from_ref(&made.campaign), problems)?;
     let compiled = compile(family, &overrides, problems)?;
     agree::agree(mapping, &needs(&compiled.plan, &compiled.graph), problems);

@@ -171,7 +171,7 @@ impl Problem {
             .elements(Vec::<Snippet<'_, annotate_snippets::Annotation<'_>>>::new());
         let put_in = self.at.as_ref().and_then(|at| at.filled.as_ref()?.put_in());
         let put_in = put_in.map(|word| (word.span.clone(), format!("the member `{}`", word.value)));
-        let name = |span: &Span| plain(&span.source.name).replace('\n', "\u{fffd}");
+        let name = |span: &Span| plain(&span.source.name);
         if let Some(at) = &self.at {
             let mut same = Snippet::source(at.source.text.as_str())
                 .path(name(at))
@@ -294,9 +294,15 @@ fn range(span: &Span) -> std::ops::Range<usize> {
     start..text.ceil_char_boundary(end)
 }
 
-/// Replaces control characters in user text, so that a terminal does not interpret them.
+/// One line of text without characters that act on a terminal: ends of lines and tabs are spaces,
+/// so that no name of a user can begin a line; other characters that act are replaced.
 pub fn plain(text: &str) -> String {
-    text.chars().map(|c| if acts(c) && c != '\n' { '\u{fffd}' } else { c }).collect()
+    let shown = |c| match c {
+        '\n' | '\r' | '\t' | '\u{2028}' | '\u{2029}' => ' ',
+        c if acts(c) => '\u{fffd}',
+        c => c,
+    };
+    text.chars().map(shown).collect()
 }
 
 /// Whether a terminal interprets a character, or whether it changes the order of the text: the

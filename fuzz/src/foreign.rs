@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use fishplate::foreign::{self, File, Format, Options};
-use fishplate::import::mapping;
+use fishplate::import::mapping::{self, Paths};
 use fishplate::problem::Problems;
 use fishplate::source::Source;
 
@@ -98,7 +98,8 @@ fn read(path: &Path, name: &str, form: Option<Format>) -> Option<File> {
 pub fn mapping(input: &[u8]) {
     let Ok(text) = std::str::from_utf8(input) else { return };
     let mut problems = Problems::default();
-    let read = mapping::read(&Source::new("mapping.yaml", text), &folder(), &mut problems);
+    let paths = Paths::inside(&folder()).expect("a folder");
+    let read = mapping::read(&Source::new("mapping.yaml", text), paths, &mut problems);
     promise::told(&problems.0);
     assert!(read.is_some() || problems.any_error(), "refused without a word");
 }

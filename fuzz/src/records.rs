@@ -7,6 +7,7 @@ use fishplate::data::record::{
     Known, Record, RecordSource, Wanted, read_headings, read_raw, read_record,
 };
 use fishplate::data::table::Table;
+use fishplate::data::text::read_text;
 use fishplate::problem::Problems;
 
 use super::promise;
@@ -125,7 +126,9 @@ pub fn table(input: &[u8]) {
     let path = folder().join("table.csv");
     write(&path, input);
     let mut problems = Problems::default();
-    let table = Table::read(&path, "table.csv", Some("section"), &mut problems);
+    let table = problems
+        .value(read_text(&path, "table.csv"))
+        .and_then(|(text, hash)| Table::parse(text, hash, Some("section"), &mut problems));
     promise::told(&problems.0);
     assert!(table.is_some() != problems.any_error(), "neither read nor refused");
     let Some(table) = table else { return };

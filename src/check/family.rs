@@ -63,11 +63,11 @@ pub fn read(source: &Arc<Source>, find: Find<'_>, problems: &mut Problems) -> Fa
         names: Vec::new(),
         whole: true,
     };
-    let mut chain = vec![reader.text(source)];
+    let mut chain = vec![reader.text(source, None)];
     while let Some(field) = chain.last().and_then(|text| head_field(&text.document, EXTENDS)) {
         let field = field.clone();
         match reader.parent(&field, &chain) {
-            Some(found) => chain.push(reader.text(&found)),
+            Some(found) => chain.push(reader.text(&found, Some(&field))),
             None => {
                 reader.whole = false;
                 break;
@@ -120,8 +120,8 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    fn text(&mut self, source: &Arc<Source>) -> Written {
-        let (from, document) = (self.sources.len(), self.read(source));
+    fn text(&mut self, source: &Arc<Source>, named_by: Option<&Field>) -> Written {
+        let (from, document) = (self.sources.len(), self.read(source, named_by));
         let mut used = Vec::new();
         for field in head(&document).into_iter().flat_map(|head| head.fields_named(USES)) {
             match self.used(field, source) {
@@ -132,8 +132,20 @@ impl Reader<'_> {
         Written { document, used, from }
     }
 
-    fn read(&mut self, source: &Arc<Source>) -> Document {
-        let document = syntax::read(source, self.problems);
+    fn read(&mut self, source: &Arc<Source>, named_by: Option<&Field>) -> Document {
+        let mut own = Problems::default();
+        let document = syntax::read(source, &mut own);
+        match named_by
+            .filter(|_| document.blocks.iter().all(|block| keys::of_block(block).is_none()))
+        {
+            // The file may be of any kind; its lines are then not printed.
+            Some(field) => {
+                let says = format!("`{}` is not a protocol", named(field));
+                self.problems.push(error("not-a-protocol", says, field));
+                self.whole = false;
+            }
+            None => self.problems.add(own.0),
+        }
         self.sources.push(Arc::clone(source));
         self.names.push(head(&document).and_then(|head| head.name.clone()));
         document
@@ -148,7 +160,7 @@ impl Reader<'_> {
     /// A text that another uses. It has no quantities, and no text behind it.
     fn used(&mut self, field: &Field, from: &Source) -> Option<Document> {
         let source = self.named(field, from)?;
-        let text = self.read(&source);
+        let text = self.read(&source, Some(field));
         let name = named(field);
         let quantity = text.blocks.iter().find(|block| block.kind.text == "quantity");
         let behind = [EXTENDS, USES].iter().find_map(|key| head_field(&text, key));

@@ -47,6 +47,7 @@ pub struct Blinded {
 
 impl Blinded {
     pub fn run(self, console: &Console) -> Done {
+        start_jobs(None)?;
         let mut campaigns = Vec::new();
         self.folders.iter().for_each(|folder| find(folder, &mut campaigns, 0));
         campaigns.sort();

@@ -88,8 +88,7 @@ impl Compare {
             let why = cell.decided_by.clone().or_else(reason).unwrap_or_default();
             format!("  {}, {}: {} ({why})\n", cell.campaign, cell.protocol, cell.verdict)
         };
-        let cells: String = found.verdicts.iter().map(cell).collect();
-        console.written(&told(report::TITLE, &report::opening(found), &cells), &self.out);
-        Ok(Exit::Done)
+        let cells = found.verdicts.iter().map(cell);
+        console.written(&told(report::TITLE, &report::opening(found), cells), &self.out)
     }
 }

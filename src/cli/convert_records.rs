@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::inputs::with_protocols;
+use super::inputs::{start_jobs, with_protocols};
 use super::output::{Console, Done, Ended, Exit};
 use super::places::{CAMPAIGN, check_folder};
 use crate::data::Campaign;
@@ -47,6 +47,7 @@ pub struct ConvertRecords {
 
 impl ConvertRecords {
     pub fn run(self, console: &Console) -> Done {
+        start_jobs(None)?;
         let mut problems = Problems::default();
         let campaign = Campaign::open(&self.campaign, &mut problems).map(with_protocols);
         if let Some(campaign) = &campaign {

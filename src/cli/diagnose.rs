@@ -109,7 +109,7 @@ impl Diagnose {
         console.problems(&problems);
         let Some((files, outcome)) = outcome else { return Ok(stopped(&problems)) };
         self.write(&out, &files.campaign, &outcome, console).map_err(Ended::unfinished)?;
-        console.written(&summary(&outcome.diagnosis), &out);
+        console.written(&summary(&outcome.diagnosis), &out)?;
         Ok(exit(&outcome.diagnosis))
     }
 
@@ -333,24 +333,33 @@ fn kept(folder: &Path, campaign: &Campaign) -> Result<Cache, Problem> {
     Ok(Cache::new(folder, of))
 }
 
-fn summary(diagnosis: &Diagnosis) -> String {
-    let mut out = format!("{}\n\nVerdict: {}\n", diagnosis.campaign, diagnosis.verdict);
+fn summary(diagnosis: &Diagnosis) -> Lines {
+    let mut out = Lines::default();
+    out += &diagnosis.campaign;
+    out += "\n";
+    out += &format!("Verdict: {}\n", diagnosis.verdict);
     out.extend(diagnosis.says.iter().map(|line| format!("  {line}\n")));
     out.extend(remark(&diagnosis.fit).map(|remark| format!("  Remark: {}\n", remark.text())));
-    out += "\nLocation of the gap:\n";
+    out += "\n";
+    out += "Location of the gap:\n";
     out.extend(diagnosis.r#where.iter().take(6).map(|place| {
         let mark = if place.significant { "" } else { "  (not significant)" };
         format!("  {:4.0} %  {}{mark}\n", 100.0 * place.share_of_gap, place.says)
     }));
     if diagnosis.causes.len() > 1 {
-        out += "\nOther candidates:\n";
+        out += "\n";
+        out += "Other candidates:\n";
     }
     out.extend(diagnosis.causes.iter().skip(1).map(|cause| {
         let mark = if cause.in_ambiguity_set { "  not distinguishable" } else { "" };
         format!("  {:5.1} %  {}{mark}\n", 100.0 * cause.probability, cause.says)
     }));
-    out.extend(diagnosis.vetoed.iter().map(|vetoed| format!("\nRejected: {}\n", vetoed.says)));
+    let vetoed = diagnosis.vetoed.iter().map(|vetoed| format!("Rejected: {}\n", vetoed.says));
     let measure = diagnosis.discriminating_measurement.iter();
-    out.extend(measure.map(|it| format!("\nThe causes can be distinguished by: {it}\n")));
+    let measure = measure.map(|it| format!("The causes can be distinguished by: {it}\n"));
+    for line in vetoed.chain(measure) {
+        out += "\n";
+        out += &line;
+    }
     out
 }

@@ -31,22 +31,18 @@ impl Effects {
     }
 }
 
-fn list(catalogue: &Catalogue) -> String {
-    let mut out = format!("{}\n", catalogue.title);
+fn list(catalogue: &Catalogue) -> Lines {
+    let mut out = Lines::default();
+    out += &catalogue.title;
     for effect in &catalogue.effects {
         let how = match &effect.action {
             Action::Simulator => "simulated".to_string(),
             Action::Formulas(_) => "signals: expressions".to_string(),
             Action::Signals(operator, _) => format!("signals: {}", operator.word()),
         };
-        let _ = write!(
-            out,
-            "\n{}  ({}, {how})\n  {}: {}\n",
-            effect.name,
-            effect.acts.word(),
-            effect.title,
-            effect.means
-        );
+        out += "\n";
+        let _ = writeln!(out, "{}  ({}, {how})", effect.name, effect.acts.word());
+        let _ = writeln!(out, "  {}: {}", effect.title, effect.means);
         for parameter in &effect.parameters {
             let unit = parameter.unit.suffix();
             let neutral = parameter

@@ -70,7 +70,7 @@ impl Explain {
         match &self.output {
             Some(path) => console.write(path, text.as_bytes()),
             None if self.format == Format::Json => console.print_json(&text),
-            None => console.print(&text),
+            None => console.print_text(&text),
         }
     }
 

@@ -6,7 +6,7 @@ use crate::check::Overrides;
 use crate::check::plan::{Plan, Side};
 use crate::import::draft::{With, draft, groups, relative_to};
 use crate::import::exchanged::exchanged;
-use crate::import::mapping::{self, Mapping};
+use crate::import::mapping::{self, Mapping, Paths};
 use crate::prepare::for_import;
 use crate::report::findings;
 use crate::result::Finding;
@@ -33,6 +33,10 @@ pub struct Import {
     /// Names of channels for the draft: a path, or the name of a shipped convention.
     #[arg(long, requires = "draft", default_value = library::CONVENTIONS[0].name)]
     convention: String,
+    /// Let the mapping name files outside its folder. It may then copy any file that you can read
+    /// into the campaign: allow it only if you know the mapping.
+    #[arg(long, conflicts_with = "draft")]
+    allow_outside: bool,
     /// Format of the records of the campaign.
     #[arg(long, value_enum, default_value_t, conflicts_with = "draft")]
     records: Records,
@@ -52,8 +56,9 @@ impl Import {
             return Err(problem.help("to propose a mapping from files, add `--draft`").into());
         };
         let mut problems = Problems::default();
-        let checked = checked(path, out, &mut problems);
-        let (mapping, compiled) = console.sound(checked, &problems)?;
+        let paths = Paths::allowed(path.parent().unwrap_or(Path::new("")), self.allow_outside)?;
+        let checked = checked((path, &paths), out, &mut problems);
+        let (mapping, compiled) = console.sound(checked, &paths.withheld(problems))?;
         let needs = compiled.as_ref().map(|compiled| needs(&compiled.plan, &compiled.graph));
         let (count, word) = (mapping.sections.names.len(), mapping.sections.word);
         let records = count * mapping.sides.len();
@@ -62,7 +67,8 @@ impl Import {
             let format = Format::from(self.records);
             crate::import::import(&mapping, needs.as_ref(), format, &mut outputs, progress)
         });
-        console.problems(&done.map_err(Ended::wrong_or_unwritten)?);
+        let told = done.map_err(|found| Ended::wrong_or_unwritten(paths.withheld(found)))?;
+        console.problems(&paths.withheld(told));
         console.commit(Ok(outputs))?;
         let ending = if word == "run" && count == 1 { "" } else { "s" };
         console.say(&format!(
@@ -83,7 +89,8 @@ impl Import {
             self.convention.clone(),
             Source::new("--convention", self.convention.clone()).whole(),
         );
-        let convention = mapping::find_convention(&named, Path::new(""), &mut problems);
+        let convention =
+            mapping::find_convention(&named, &Paths::allowed(Path::new(""), true)?, &mut problems);
         console.problems(&problems);
         let (Some(compiled), Some(convention)) = (compiled, convention) else {
             return Ok(Exit::Wrong);
@@ -107,13 +114,13 @@ impl Import {
 
 /// The mapping and its protocol, checked against each other before any record is read.
 fn checked(
-    path: &Path,
+    (path, paths): (&Path, &Paths),
     out: &Path,
     problems: &mut Problems,
 ) -> Option<(Mapping, Option<Compiled>)> {
     let (source, _) = problems.value(read_text(path, &path.display().to_string()))?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    let mapping = mapping::read(&source, folder, problems);
+    let mapping = mapping::read(&source, paths.clone(), problems);
     if same(out, if folder.as_os_str().is_empty() { Path::new(".") } else { folder }) {
         let says =
             format!("the campaign cannot go to `{}`, the folder of the mapping", out.display());
@@ -124,8 +131,9 @@ fn checked(
     for side in &mapping.sides {
         let pattern = &side.files;
         let inside = mapping.sections.names.iter().any(|name| {
-            let (path, _) = mapping.place(&mapping.sections.fill(&pattern.value, &name.value));
-            path.parent()
+            let Ok(place) = mapping.place_of(pattern, &name.value) else { return false };
+            let parent = place.path.parent();
+            parent
                 .is_some_and(|parent| same(parent, &out.join(side.kind.key())) || same(parent, out))
         });
         if inside {

@@ -1,5 +1,6 @@
 //! Common inputs of the subcommands that evaluate a protocol on a campaign.
 
+use std::error::Error;
 use std::num::NonZeroUsize;
 use std::path::Path;
 
@@ -13,19 +14,35 @@ use crate::problem::{Problem, Problems};
 /// and signals. The value exceeds the number of cores of the machines the program is used on.
 const MOST_JOBS: usize = 256;
 
-/// Starts the requested number of threads.
+/// Number of threads where `--jobs` states none, as the thread pool reads it.
+const THREADS: &str = "RAYON_NUM_THREADS";
+
+/// Starts the requested number of threads: `--jobs`, the environment, else one per core.
 ///
 /// # Errors
-/// The number exceeds [`MOST_JOBS`].
+/// The number exceeds [`MOST_JOBS`]; the system starts no more threads.
 pub fn start_jobs(jobs: Option<NonZeroUsize>) -> Result<(), Ended> {
-    let Some(jobs) = jobs.map(NonZeroUsize::get) else { return Ok(()) };
+    let stated = std::env::var(THREADS).ok().and_then(|text| text.parse().ok());
+    let (jobs, by) = match jobs {
+        Some(jobs) => (jobs.get(), format!("`--jobs {jobs}`")),
+        None => (stated.unwrap_or(0), format!("`{THREADS}={}`", stated.unwrap_or(0))),
+    };
     if jobs > MOST_JOBS {
-        let says = format!("`--jobs {jobs}` exceeds the maximum of {MOST_JOBS}");
+        let says = format!("{by} exceeds the maximum of {MOST_JOBS}");
         return Err(Problem::error("jobs", says).help("omit it to use one per core").into());
     }
-    // Fails only if the thread pool exists already, which is not the case here.
-    let _ = rayon::ThreadPoolBuilder::new().num_threads(jobs).build_global();
-    Ok(())
+    let cores = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
+    let jobs = if jobs == 0 { cores.min(MOST_JOBS) } else { jobs };
+    let started = rayon::ThreadPoolBuilder::new().num_threads(jobs).build_global();
+    // Without a reason of the system, there are threads already.
+    match started.err().as_ref().and_then(Error::source) {
+        Some(why) => {
+            let says = format!("{jobs} threads cannot be started: {why}");
+            let problem = Problem::error("jobs", says).help("state fewer: `--jobs 1`");
+            Err(Ended::unfinished(problem))
+        }
+        None => Ok(()),
+    }
 }
 
 /// Refuses an output folder if files of one of the campaigns would be overwritten.

@@ -20,3 +20,4 @@ pub use crate::data::{Campaign, RecordKind};
 pub use crate::disk::{self, SetKind};
 pub use crate::library;
 pub use crate::problem::{Problem, Problems};
+pub use crate::terminal::Lines;

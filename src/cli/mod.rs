@@ -31,11 +31,12 @@ mod values;
 mod verify;
 
 use std::ffi::OsString;
+use std::io::{ErrorKind, Write};
 use std::path::PathBuf;
 
 use clap::{Parser, Subcommand, ValueEnum};
 
-use crate::problem::{acts, plain};
+use crate::problem::plain;
 use output::Console;
 pub use output::Exit;
 
@@ -258,14 +259,16 @@ pub fn run_with(words: impl IntoIterator<Item = OsString>) -> Exit {
     let arguments = match Arguments::try_parse_from(&words) {
         Ok(arguments) => arguments,
         Err(error) => {
+            // The same of words that a terminal can show: the message repeats them.
+            let plain = words.iter().map(|word| plain(&word.to_string_lossy()));
+            let error = Arguments::try_parse_from(plain).err().unwrap_or(error);
+            let printed = error.print().and_then(|()| std::io::stdout().flush());
             // clap also reports help and version as errors, which go to standard output.
-            let failed = error.use_stderr();
-            if words.iter().any(|word| word.to_string_lossy().chars().any(acts)) {
-                eprint!("{}", plain(&error.render().to_string()));
-            } else {
-                let _ = error.print();
-            }
-            return if failed { Exit::Wrong } else { Exit::Done };
+            return match printed {
+                _ if error.use_stderr() => Exit::Wrong,
+                Err(why) if why.kind() != ErrorKind::BrokenPipe => Exit::Unfinished,
+                _ => Exit::Done,
+            };
         }
     };
     let console = Console::new(arguments.quiet, arguments.color);
@@ -305,7 +308,7 @@ pub fn run_with(words: impl IntoIterator<Item = OsString>) -> Exit {
                 "fishplate",
                 &mut bytes,
             );
-            console.print(&String::from_utf8_lossy(&bytes))
+            console.print_file(&String::from_utf8_lossy(&bytes))
         }
         Command::Man { out } => protocols::man(&out, &console),
     };

@@ -33,6 +33,7 @@ pub struct New {
 
 impl New {
     pub fn run(self, console: &Console) -> Done {
+        start_jobs(None)?;
         scaffold(&self.folder, console, |name, problems| {
             let Made { files, told } = self.made(name, problems)?;
             let folder = self.folder.display();

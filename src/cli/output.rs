@@ -10,6 +10,7 @@ use crate::data::write::{Outputs, write_whole};
 use crate::disk::SetKind;
 use crate::problem::{Problem, Problems, acts, plain};
 use crate::run::Progress;
+use crate::terminal::Lines;
 
 /// Exit codes, as documented.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,19 +83,20 @@ impl Console {
         }
     }
 
-    /// Prints a result to standard output. Control characters are made visible.
+    /// Prints a result to standard output.
     ///
     /// # Errors
     /// Standard output cannot be written.
-    pub fn print(&self, text: &str) -> Done {
-        self.put(&painted(&readable(text)))
+    pub fn print(&self, lines: &Lines) -> Done {
+        self.put(&painted(lines.text()))
     }
 
-    /// The same beside files that were written: that it cannot be printed is told.
-    pub fn show(&self, text: &str) {
-        if let Err(ended) = self.print(text) {
-            self.problems(&ended.problems);
-        }
+    /// Prints the text of a protocol at a stage. Control characters are made visible.
+    ///
+    /// # Errors
+    /// As [`Self::print`].
+    pub fn print_text(&self, text: &str) -> Done {
+        self.put(&readable(text))
     }
 
     /// Prints the text of a file: unchanged if redirected, with visible control characters on a
@@ -110,7 +112,8 @@ impl Console {
 
     /// A closed pipe is not an error.
     fn put(&self, text: &str) -> Done {
-        match std::io::stdout().lock().write_all(text.as_bytes()) {
+        let mut out = std::io::stdout().lock();
+        match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
             Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
                 let says = format!("standard output cannot be written: {error}");
                 Err(Ended::unfinished(Problem::error("write-failed", says)))
@@ -179,11 +182,16 @@ impl Console {
     }
 
     /// Tells what was found, and where it was written.
-    pub fn written(&self, summary: &str, out: &Path) {
-        if !self.quiet {
-            self.show(summary);
-            self.say(&format!("written: {}", out.display()));
+    ///
+    /// # Errors
+    /// Standard output cannot be written. The files are there, and this is told too.
+    pub fn written(&self, summary: &Lines, out: &Path) -> Done {
+        if self.quiet {
+            return Ok(Exit::Done);
         }
+        let printed = self.print(summary);
+        self.say(&format!("written: {}", out.display()));
+        printed
     }
 
     /// Writes a set of files, all or none.
@@ -229,7 +237,7 @@ fn painted(text: &str) -> String {
     text.replace(GOOD, "\u{1b}[32m").replace(BAD, "\u{1b}[31;1m").replace(PLAIN, "\u{1b}[0m")
 }
 
-/// Text for a terminal; tabs are kept.
+/// The text of a file for a terminal; lines and tabs are kept.
 fn readable(text: &str) -> String {
     text.chars()
         .map(|c| if acts(c) && !matches!(c, '\n' | '\t') { '\u{fffd}' } else { c })
@@ -251,15 +259,14 @@ mod tests {
     #[test]
     fn nothing_that_acts_reaches_a_terminal() {
         let nasty = "a\u{1b}[31mb\u{202e}c\u{9b}d\r\te\n";
-        assert_eq!(painted(&readable(nasty)), "a\u{fffd}[31mb\u{fffd}c\u{fffd}d\u{fffd}\te\n");
+        assert_eq!(readable(nasty), "a\u{fffd}[31mb\u{fffd}c\u{fffd}d\u{fffd}\te\n");
         let json = serde_json::to_string(nasty).expect("JSON");
         let text = escaped(&json);
         assert!(!text.chars().any(acts), "{text}");
         assert_eq!(serde_json::from_str::<String>(&text).expect("JSON"), nasty);
         let console = Console { quiet: false, color: true, color_errors: true };
-        assert_eq!(
-            painted(&readable(&console.paint("x".into(), Some(true)))),
-            "\u{1b}[32mx\u{1b}[0m"
-        );
+        let mut lines = Lines::default();
+        lines += &console.paint("x".into(), Some(true));
+        assert_eq!(painted(lines.text()), "\u{1b}[32mx\u{1b}[0m\n");
     }
 }

@@ -12,6 +12,7 @@ pub use crate::prepare::load;
 use crate::problem::{Problem, Problems};
 use crate::source::Source;
 use crate::syntax;
+use crate::terminal::Lines;
 
 pub fn check(names: &[String], console: &Console) -> Done {
     let mut exit = Exit::Done;
@@ -109,9 +110,9 @@ pub fn diff(before: &str, after: &str, console: &Console) -> Done {
     let (before, after) = console.sound(before.zip(after), &problems)?;
     let found = check::diff::diff(&before.merged, &after.merged);
     if found.is_empty() {
-        return console.print("no rule differs\n");
+        return console.print_file("no rule differs\n");
     }
-    let mut text = String::new();
+    let mut text = Lines::default();
     for deviation in found {
         text += &format!("{}\n", deviation.rule);
         if let Some(before) = deviation.before {
@@ -139,7 +140,7 @@ pub fn list(name: Option<&str>, console: &Console) -> Done {
         None => {
             let width =
                 library::SHIPPED.iter().map(|shipped| shipped.name.len()).max().unwrap_or(0);
-            let text: String = library::SHIPPED
+            let text: Lines = library::SHIPPED
                 .iter()
                 .map(|shipped| {
                     let source = Source::new(shipped.name, shipped.text);

@@ -66,13 +66,13 @@ impl Reduce {
             console.with_progress(steps, |progress| values::reduce(&opened, part, progress))?;
         let bytes = values::write(&opened.compiled.plan, &values).map_err(Ended::unfinished)?;
         console.write(&self.out, &bytes)?;
-        console.written(&told(&values), &self.out);
+        console.written(&told(&values), &self.out)?;
         Ok(Exit::Done)
     }
 }
 
 /// How many values of how many sections there are, and the sections that cannot be evaluated.
-fn told(values: &Values) -> String {
+fn told(values: &Values) -> Lines {
     let rows: usize =
         values.sections.iter().flat_map(|(_, values)| &values.rows).map(Vec::len).sum();
     let units = values.head.basis.units();
@@ -82,12 +82,9 @@ fn told(values: &Values) -> String {
         Some(format!("  {} not used: {}\n", unit.name, fault.text()))
     };
     let faults: Vec<String> = values.sections.iter().filter_map(fault).collect();
-    format!(
-        "{rows} values of {} of {} sections\n{}",
-        values.sections.len() - faults.len(),
-        units.len(),
-        faults.concat()
-    )
+    let used = values.sections.len() - faults.len();
+    let first = format!("{rows} values of {used} of {} sections", units.len());
+    std::iter::once(first).chain(faults).collect()
 }
 
 #[derive(Debug, Args)]
@@ -101,6 +98,7 @@ pub struct Judge {
 
 impl Judge {
     pub fn run(self, console: &Console) -> Done {
+        start_jobs(None)?;
         let mut problems = Problems::default();
         let inputs: Vec<&Path> = self.values.iter().map(PathBuf::as_path).collect();
         for name in super::places::REPORT {

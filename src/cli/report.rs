@@ -75,7 +75,7 @@ impl Report {
         let found = &found;
         let files = self.files(found, key).map_err(Ended::unfinished)?;
         console.write_all(SetKind::Report, &self.out, &files)?;
-        console.written(&summary(found, console), &self.out);
+        console.written(&summary(found, console), &self.out)?;
         let holds = found.verdict == Verdict::Validated && !found.draft;
         Ok(if holds { Exit::Done } else { Exit::DoesNotHold })
     }
@@ -103,13 +103,15 @@ impl Report {
 }
 
 /// The table of verdicts for the terminal.
-fn summary(found: &Certification, console: &Console) -> String {
-    let mut out = format!("{}\n{}\n\n", found.campaign.name, found.protocol.title);
-    let table = statistics(found, console);
-    let further = estimated(found, console);
-    let between = if table.is_empty() || further.is_empty() { "" } else { "\n" };
-    out += &format!("{table}{between}{further}");
-    out.push('\n');
+fn summary(found: &Certification, console: &Console) -> Lines {
+    let mut out = Lines::default();
+    out += &found.campaign.name;
+    out += &found.protocol.title;
+    out += "\n";
+    for table in [statistics(found, console), estimated(found, console)].iter().flatten() {
+        out.append(table);
+        out += "\n";
+    }
     let used = found.sections.iter().filter(|section| section.used).count();
     out += &format!("{used} of {} sections used\n", found.sections.len());
     for section in found.sections.iter().filter(|section| !section.used) {
@@ -135,9 +137,10 @@ fn summary(found: &Certification, console: &Console) -> String {
     let overall = found.verdicts.iter().find(|verdict| verdict.overall);
     let title = overall.map_or(String::new(), |verdict| format!(", {}", verdict.title));
     let words = format!("Verdict{title}: {}", found.verdict_in_words());
-    out += &format!("\n{}\n", console.paint(words, Some(holds)));
+    out += "\n";
+    out += &console.paint(words, Some(holds));
     for says in rules::beside_verdict(found) {
-        out += &format!("  {says}\n");
+        out += &format!("  {says}");
     }
     for reason in &found.reasons {
         out += &format!("  {}\n", reason.text());
@@ -175,7 +178,7 @@ fn ratio(statistic: &StatisticResult) -> String {
 }
 
 /// Statistics that are told one by one: those of comparisons.
-fn statistics(found: &Certification, console: &Console) -> String {
+fn statistics(found: &Certification, console: &Console) -> Option<Lines> {
     let told: Vec<_> = found
         .quantities
         .iter()
@@ -186,10 +189,11 @@ fn statistics(found: &Certification, console: &Console) -> String {
             || quantity.statistics.is_empty() && quantity.reason.is_some()
     };
     if !told.iter().any(has_row) && !found.quantities.is_empty() {
-        return String::new();
+        return None;
     }
     let width = told.iter().map(|quantity| quantity.id.chars().count()).max().unwrap_or(8).max(8);
-    let mut out = format!(
+    let mut out = Lines::default();
+    out += &format!(
         "{:width$}  {:>8}  {:<26} {:>5}  {:>4}  {:>12}  {:>12}  {:>8}\n",
         "quantity", "unit", "statistic", "pairs", "n", "value", "limit", "|v|/limit"
     );
@@ -222,12 +226,12 @@ fn statistics(found: &Certification, console: &Console) -> String {
             _ => {}
         }
     }
-    out
+    Some(out)
 }
 
 /// One line for each limit of assessed quantities and each limit by group: how many groups hold,
 /// and the largest ratio with its place.
-fn estimated(found: &Certification, console: &Console) -> String {
+fn estimated(found: &Certification, console: &Console) -> Option<Lines> {
     let limits: Vec<_> = found
         .quantities
         .iter()
@@ -236,7 +240,7 @@ fn estimated(found: &Certification, console: &Console) -> String {
         })
         .collect();
     if limits.is_empty() {
-        return String::new();
+        return None;
     }
     let longest =
         |texts: &mut dyn Iterator<Item = usize>, least: usize| texts.max().unwrap_or(0).max(least);
@@ -245,7 +249,8 @@ fn estimated(found: &Certification, console: &Console) -> String {
         longest(&mut limits.iter().map(|(_, limit)| limit.results[0].title.chars().count()), 8);
     let place = |limit: &OfLimit<'_>| limit.decisive().scope.to_string();
     let places = longest(&mut limits.iter().map(|(_, limit)| place(limit).chars().count()), 10);
-    let mut out = format!(
+    let mut out = Lines::default();
+    out += &format!(
         "{:ids$}  {:>8}  {:titles$}  {:>12}  {:>12}  {:>9}  {:places$}  groups met\n",
         "quantity", "unit", "estimate", "largest", "limit", "|v|/limit", "where"
     );
@@ -269,5 +274,5 @@ fn estimated(found: &Certification, console: &Console) -> String {
     if limits.iter().any(|(_, limit)| limit.by_group()) {
         out += "all groups: report, results.json\n";
     }
-    out
+    Some(out)
 }

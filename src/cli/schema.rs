@@ -50,5 +50,5 @@ fn of_file<T: JsonSchema>() -> serde_json::Value {
 
 /// Prints a schema.
 pub fn print(of: Of, console: &Console) -> Done {
-    console.print(&result::text(&schema(of)))
+    console.print_file(&result::text(&schema(of)))
 }

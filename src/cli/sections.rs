@@ -86,7 +86,7 @@ impl Sections {
         let records = committed.transpose()?;
         if !console.quiet {
             if let Some(found) = &told {
-                console.show(&words(found));
+                console.print(&words(found))?;
             }
             self.out.iter().for_each(|out| console.say(&format!("written: {}", out.display())));
             for (folder, records) in self.cut.iter().zip(records) {
@@ -101,13 +101,15 @@ impl Sections {
     }
 }
 
-fn words(found: &FoundSections) -> String {
-    let mut out = format!("{}\n", in_words(found));
+fn words(found: &FoundSections) -> Lines {
+    let mut out = Lines::default();
+    out += &in_words(found);
     let unit = &found.axis_unit;
     for run in &found.runs {
+        out += "\n";
         let _ = writeln!(
             out,
-            "\n{}: {} to {} {unit}, {} sections",
+            "{}: {} to {} {unit}, {} sections",
             run.run, run.start, run.end, run.found
         );
         if let Some(says) = drift_in_words(run, unit) {

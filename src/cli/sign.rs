@@ -1,6 +1,7 @@
 //! `fishplate keygen` and `fishplate sign`.
 
 use super::kit::*;
+use crate::data::write::replace;
 use crate::provenance::signature::{PASSWORD, beside, content, new_keys, secret_key, sign};
 
 #[derive(Debug, Args)]
@@ -79,7 +80,7 @@ impl Sign {
             signed.push((beside(path), text));
         }
         for (path, text) in signed {
-            console.write(&path, text.as_bytes())?;
+            replace(&path, text.as_bytes()).map_err(Ended::unfinished)?;
             console.say(&format!("written: {}", path.display()));
         }
         Ok(Exit::Done)

@@ -4,7 +4,7 @@ use super::kit::*;
 use crate::data::campaign::CAMPAIGN_FILE;
 use crate::data::fingerprint::{fingerprint, of_file};
 use crate::data::origin::ORIGIN_FILE;
-use crate::import::mapping;
+use crate::import::mapping::{self, Paths};
 use crate::prepare::for_import;
 use crate::provenance::verify::{Check, lines};
 use crate::run::needs::needs;
@@ -27,15 +27,16 @@ pub fn imported_again(folder: &Path, sources: &Path) -> Result<Check, Problems> 
         return Ok(Check::not_possible(NAME, "the campaign was not written by an import"));
     };
     let source = Source::new(ORIGIN_FILE, imported.mapping.0.clone());
-    let mapping = mapping::read(&source, sources, &mut problems);
+    let paths = problems.value(Paths::inside(sources));
+    let mapping = paths.and_then(|paths| mapping::read(&source, paths, &mut problems));
     let compiled = mapping.as_ref().and_then(|mapping| for_import(mapping, &mut problems));
     let (Some(mapping), Some(compiled)) = (mapping, compiled) else {
         return Ok(not_repeated(&problems));
     };
     let mut details = Vec::new();
     for file in &origin.sources {
-        let (path, shown) = mapping.place(&file.path);
-        let now = of_file(&path, &shown)?.map(|(hash, _)| hash);
+        let place = mapping.paths.place(&file.path, &mapping.top())?;
+        let now = of_file(&place.path, &place.shown)?.map(|(hash, _)| hash);
         if now.as_ref() != Some(&file.sha256) {
             let now = now.unwrap_or_else(|| "missing".into());
             details.push(format!(

@@ -229,12 +229,13 @@ fn write(common: &Common, study: &found::Study, console: &Console) -> Done {
     console.write_all(SetKind::Report, &common.out, &files)?;
     let opening = report::opening(study);
     let fact = |fact: &Fact| format!("  {}: {}\n", fact.name, fact.value.letters());
-    let facts: String = opening.facts.iter().map(fact).collect();
-    console.written(&told(&report::title(study), &opening, &facts), &common.out);
-    Ok(Exit::Done)
+    let facts = opening.facts.iter().map(fact);
+    console.written(&told(&report::title(study), &opening, facts), &common.out)
 }
 
 /// What a document says at its beginning, and some facts.
-pub fn told(title: &str, Opening { headline, sentence, .. }: &Opening, facts: &str) -> String {
-    format!("{title}\n\n{}\n{sentence}\n{facts}", headline.word)
+pub fn told(title: &str, opening: &Opening, facts: impl Iterator<Item = String>) -> Lines {
+    let Opening { headline, sentence, .. } = opening;
+    let first = [title, "", &headline.word, sentence].map(str::to_string);
+    first.into_iter().chain(facts).collect()
 }

@@ -51,10 +51,7 @@ const MOST: usize = 20;
 
 impl Verify {
     pub fn run(self, console: &Console) -> Done {
-        if let Some(jobs) = self.jobs {
-            // Fails only if the thread pool exists already, which is not the case here.
-            let _ = rayon::ThreadPoolBuilder::new().num_threads(jobs.get()).build_global();
-        }
+        start_jobs(self.jobs)?;
         if let Some(folder) = self.campaigns.iter().find(|folder| !disk::may_exist(folder)) {
             let says = format!("there is no campaign `{}`", folder.display());
             return Err(Problem::error("folder-missing", says).into());
@@ -101,7 +98,7 @@ impl Verify {
         };
         if !console.quiet || exit != Exit::Done {
             let most = if self.all { usize::MAX } else { MOST };
-            console.print(&told(&carried, &checks, most, console.color))?;
+            console.print(&told(&carried, &checks, most, console))?;
         }
         Ok(exit)
     }
@@ -122,27 +119,28 @@ fn open(
 }
 
 /// The result for the terminal. Control characters in names of a report are made visible.
-fn told(carried: &Carried, checks: &[Check], most: usize, color: bool) -> String {
+fn told(carried: &Carried, checks: &[Check], most: usize, console: &Console) -> Lines {
     let results = &carried.results;
-    let mut out = format!(
-        "{}\n  campaign   {}\n  protocol   {}, SHA-256 {}\n  verdict    {}, by fishplate {}\n\n",
-        visible(&carried.shown),
-        visible(&results.campaign.name),
-        visible(&results.protocol.name),
-        visible(&results.protocol.sha256),
-        visible(results.own_word.as_ref().unwrap_or(&results.verdict_text)),
-        visible(&results.fishplate)
-    );
+    let (protocol, word) = (&results.protocol, results.own_word.as_ref());
+    let word = word.unwrap_or(&results.verdict_text);
+    let mut out = Lines::default();
+    out += &visible(&carried.shown);
+    for line in [
+        format!("  campaign   {}", results.campaign.name),
+        format!("  protocol   {}, SHA-256 {}", protocol.name, protocol.sha256),
+        format!("  verdict    {word}, by fishplate {}", results.fishplate),
+    ] {
+        out += &visible(&line);
+    }
+    out += "\n";
     for check in checks {
-        let (word, paint) = match check.outcome {
-            Outcome::Agrees => ("agrees", "\u{1b}[32m"),
-            Outcome::Differs => ("DIFFERS", "\u{1b}[31;1m"),
-            Outcome::NotChecked | Outcome::NotAsked => ("not checked", ""),
-            Outcome::NotPossible => ("NOT POSSIBLE", "\u{1b}[31;1m"),
+        let (word, good) = match check.outcome {
+            Outcome::Agrees => ("agrees", Some(true)),
+            Outcome::Differs => ("DIFFERS", Some(false)),
+            Outcome::NotChecked | Outcome::NotAsked => ("not checked", None),
+            Outcome::NotPossible => ("NOT POSSIBLE", Some(false)),
         };
-        let word = format!("{word:<13}");
-        let word =
-            if color && !paint.is_empty() { format!("{paint}{word}\u{1b}[0m") } else { word };
+        let word = console.paint(format!("{word:<13}"), good);
         out += &format!("{word}{:<15} {}\n", check.name, visible(&check.says));
         for detail in check.details.iter().take(most) {
             out += &format!("{:28} {}\n", "", visible(detail));
@@ -168,7 +166,9 @@ fn told(carried: &Carried, checks: &[Check], most: usize, color: bool) -> String
         ("", open, _) => format!("the check could not be completed ({open})"),
         (differ, ..) => format!("differs ({differ})"),
     };
-    out + &format!("\nResult: {result}\n")
+    out += "\n";
+    out += &format!("Result: {result}\n");
+    out
 }
 
 #[derive(Debug, Args)]
@@ -196,6 +196,7 @@ pub struct Trace {
 
 impl Trace {
     pub fn run(self, console: &Console) -> Done {
+        start_jobs(None)?;
         let (carried, given) = open(&self.results, self.protocol.as_deref())?;
         if !self.campaigns.is_empty() {
             of_as_many(&carried, &self.campaigns)?;
@@ -217,8 +218,7 @@ impl Trace {
             record: self.record.as_deref(),
         };
         let found = trace(&carried, compiled.as_ref(), asked, &self.campaigns)?;
-        let text: Vec<String> = found.text.split('\n').map(visible).collect();
-        console.print(&text.join("\n"))?;
+        console.print(&found.text)?;
         Ok(if found.agrees { Exit::Done } else { Exit::DoesNotHold })
     }
 }

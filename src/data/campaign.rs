@@ -103,7 +103,7 @@ pub struct Campaign {
 impl Campaign {
     /// Opens a campaign by its folder or its `campaign.yaml`. Records are read later.
     ///
-    /// Problems: those of `read_text`, `yaml::load` and [`Table::read`]; `folder-missing`,
+    /// Problems: those of `read_text`, `yaml::load` and [`Table::parse`]; `folder-missing`,
     /// `path-outside`, `path-invalid`, `key-missing`, `wrong-kind`, `no-records`.
     pub fn open(path: &Path, problems: &mut Problems) -> Option<Self> {
         let named = path.file_name().is_some_and(|name| name == CAMPAIGN_FILE)

@@ -47,6 +47,11 @@ impl Folder {
         Ok(Self { shown: folder.to_path_buf(), real, memory: Arc::default() })
     }
 
+    /// The same folder with another name in messages.
+    pub fn shown_as(self, shown: &Path) -> Self {
+        Self { shown: shown.to_path_buf(), ..self }
+    }
+
     /// A folder without a place on the disk.
     pub fn nowhere() -> Self {
         Self { shown: PathBuf::new(), real: PathBuf::from(NOWHERE), memory: Arc::default() }

@@ -48,7 +48,7 @@ pub use campaign::{Campaign, RecordKind, WhichRecord};
 pub use campaigns::{Campaigns, qualified};
 pub use cells::Heading;
 pub use checks::{Axis, check_axis};
-pub use folder::check_file_name;
+pub use folder::{Folder, check_file_name};
 pub use place::CampaignPath;
 pub use record::{Column, Record, Wanted, read_record};
 pub use table::Table;

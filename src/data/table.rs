@@ -1,12 +1,10 @@
 //! A small CSV table such as `sections.csv`: named rows, and cells with their places.
 
 use std::collections::HashMap;
-use std::path::Path;
 use std::sync::Arc;
 
 use super::cells::{self, Heading};
 use super::faults::Faults;
-use super::text::read_text;
 use crate::problem::{Problem, Problems, error, problem};
 use crate::source::{Source, Span, Spanned};
 use crate::units::Dimension;
@@ -31,22 +29,6 @@ pub struct Table {
 pub type Cell = Spanned<String>;
 
 impl Table {
-    /// Reads a table. With a key, the column of that name, or else the first column, has the names
-    /// of the rows.
-    ///
-    /// Problems: those of [`read_text`]; `semicolon-separated`, `tab-separated`, `stray-quote`,
-    /// `duplicate-column`; per row `blank-line`, `header-repeated`, `ragged-row`, `decimal-comma`,
-    /// `name-missing`, `duplicate-name`; `no-rows`.
-    pub fn read(
-        path: &Path,
-        shown: &str,
-        key: Option<&str>,
-        problems: &mut Problems,
-    ) -> Option<Self> {
-        let (source, sha256) = problems.value(read_text(path, shown))?;
-        Self::parse(source, sha256, key, problems)
-    }
-
     /// A table that is not in a file, with the names of its rows in the first column.
     ///
     /// # Errors
@@ -64,7 +46,13 @@ impl Table {
         })
     }
 
-    pub(super) fn parse(
+    /// Reads the text of a table. With a key, the column of that name, or else the first column,
+    /// has the names of the rows.
+    ///
+    /// Problems: `semicolon-separated`, `tab-separated`, `stray-quote`, `duplicate-column`; per row
+    /// `blank-line`, `header-repeated`, `ragged-row`, `decimal-comma`, `name-missing`,
+    /// `duplicate-name`; `no-rows`.
+    pub fn parse(
         source: Arc<Source>,
         sha256: String,
         key: Option<&str>,

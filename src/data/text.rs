@@ -12,9 +12,10 @@ use crate::source::{Source, Span};
 
 /// Maximum size of a YAML file or table in bytes; typical ones have a few thousand.
 const SMALL: u64 = 16 << 20;
-/// Maximum size of a record in bytes: a hundred channels at 1 kHz for about twenty minutes. A
-/// worker holds one such text and its numbers, which take about the same again.
-pub const LARGEST_RECORD: u64 = 1 << 30;
+/// Maximum size in bytes of a record that is read as a whole, and of its numbers: a hundred
+/// channels at 1 kHz for about five minutes. A worker holds its numbers and what is made of them,
+/// up to four times as much. Longer records are runs, which are read in parts.
+pub const LARGEST_RECORD: u64 = 256 << 20;
 /// Maximum length of a line of a record in bytes: ten thousand channels with headings of a hundred
 /// characters. A file without lines (zeros, an image, a sparse file) is reported after this number
 /// of bytes.

@@ -26,6 +26,15 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Problem> {
     written(path, bytes, disk::write_whole)
 }
 
+/// As [`write_whole`], for a name that the user did not give: a symbolic link there is replaced, not
+/// followed.
+///
+/// # Errors
+/// As [`write_whole`].
+pub fn replace(path: &Path, bytes: &[u8]) -> Result<(), Problem> {
+    written(path, bytes, disk::replace)
+}
+
 /// As [`write_whole`], for files that may be lost in a power failure, such as a cache.
 ///
 /// # Errors

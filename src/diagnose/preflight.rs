@@ -12,6 +12,7 @@ use crate::diagnose::levels::preflight::{LISTED, SEEN};
 use crate::effects::{Action, Applied, Catalogue, Effect, Fit, Parameter};
 use crate::problem::{Problem, Problems};
 use crate::simulate::{Plan, Section, Simulator, Task};
+use crate::terminal::Lines;
 
 /// What the effects of a catalogue change in one section.
 #[derive(Debug)]
@@ -330,10 +331,12 @@ impl Try {
 impl Preflight {
     /// One line for each effect.
     #[must_use]
-    pub fn in_words(&self) -> String {
+    pub fn in_words(&self) -> Lines {
         use std::fmt::Write;
-        let mut out = format!(
-            "Preflight on section {}, {} features; sd: one standard deviation of a feature\n",
+        let mut out = Lines::default();
+        let _ = writeln!(
+            out,
+            "Preflight on section {}, {} features; sd: one standard deviation of a feature",
             self.section, self.features
         );
         for effect in &self.effects {

@@ -23,7 +23,7 @@ use std::path::{Path, PathBuf};
 
 use faults::{Op, pass, passed};
 pub use set::{SIGNATURE, Set, SetKind, UNFINISHED};
-pub use single::{create_new, folder_of, keep, remove, write_whole};
+pub use single::{create_new, folder_of, keep, remove, replace, write_whole};
 pub use tempfile::TempDir as Scratch;
 
 /// Kind of the object at a path.
@@ -204,13 +204,13 @@ pub fn read(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     if bytes.len() as u64 > limit { Err(too_large()) } else { Ok(bytes) }
 }
 
-/// The environment variables of a process, each terminated by a zero.
+/// What the system says of a process: `environ`, its variables, each terminated by a zero; `stat`.
 ///
 /// # Errors
 /// The process has ended, or belongs to another user.
 #[cfg(target_os = "linux")]
-pub fn process_variables(id: i32) -> io::Result<Vec<u8>> {
-    let path = PathBuf::from(format!("/proc/{id}/environ"));
+pub fn of_process(id: i32, what: &str) -> io::Result<Vec<u8>> {
+    let path = PathBuf::from(format!("/proc/{id}/{what}"));
     let mut bytes = Vec::new();
     open(&path)?.take(LARGEST_VARIABLES).read_to_end(&mut bytes)?;
     Ok(bytes)

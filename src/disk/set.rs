@@ -117,7 +117,7 @@ impl Set {
         }
         make_folders(&self.folder, &mut self.made)?;
         self.held = hold(&self.folder)?;
-        if is_folder(&self.folder.join(UNFINISHED))? {
+        if is_link(&self.folder.join(UNFINISHED))? || is_folder(&self.folder.join(UNFINISHED))? {
             finish(&self.folder)?;
             self.mended = true;
         }
@@ -205,6 +205,7 @@ impl Set {
     pub fn commit(mut self) -> io::Result<()> {
         self.begin()?;
         for path in &self.paths {
+            not_behind_link(&self.folder, path)?;
             if is_folder(&self.folder.join(path))? {
                 let says = format!("`{path}` is a folder");
                 return Err(io::Error::new(ErrorKind::IsADirectory, says));
@@ -264,11 +265,7 @@ impl Set {
         for (path, hash) in written.chain(removes.iter().map(|path| (path, None))) {
             let signature = format!("{path}{SIGNATURE}");
             let listed = new.contains(signature.as_str()) || removes.contains(&signature);
-            if !listed
-                && !behind_link(&self.folder, &signature)?
-                && is_file(&self.folder.join(&signature))?
-                && changed(path, hash)
-            {
+            if !listed && in_place(&self.folder, &signature)? && changed(path, hash) {
                 outdated.push(signature);
             }
         }
@@ -318,26 +315,38 @@ fn before(folder: &Path, manifest: &str) -> io::Result<Vec<String>> {
     for path in text.lines().filter_map(|line| Some(line.split_once("  ")?.1)) {
         // The manifest may have been edited: its paths must be inside this folder and not behind a
         // link.
-        if plain(path)
-            && !path.starts_with(OWN)
-            && !behind_link(folder, path)?
-            && is_file(&folder.join(path))?
-        {
+        if plain(path) && !path.starts_with(OWN) && in_place(folder, path)? {
             found.push(path.to_string());
         }
     }
     Ok(found)
 }
 
-fn behind_link(folder: &Path, path: &str) -> io::Result<bool> {
-    let mut at = folder.to_path_buf();
-    for part in path.split('/') {
-        at.push(part);
-        if is_link(&at)? {
-            return Ok(true);
+/// The symbolic link that leads to a path in the folder, if there is one. The last name may be a
+/// link itself, which can be renamed and removed like a file.
+fn link_above(folder: &Path, path: &str) -> io::Result<Option<PathBuf>> {
+    let above: Vec<PathBuf> =
+        Path::new(path).ancestors().skip(1).map(|above| folder.join(above)).collect();
+    // The folder itself is the user's choice.
+    for at in above.iter().rev().skip(1) {
+        if is_link(at)? {
+            return Ok(Some(at.clone()));
         }
     }
-    Ok(false)
+    Ok(None)
+}
+
+/// Refuses a path that leads through a symbolic link: what it names may be anywhere.
+fn not_behind_link(folder: &Path, path: &str) -> io::Result<()> {
+    let Some(link) = link_above(folder, path)? else { return Ok(()) };
+    let says = format!("`{}` is a symbolic link, which is not followed", link.display());
+    Err(io::Error::new(ErrorKind::NotADirectory, says))
+}
+
+/// Whether a path is that of a file or a link in the folder, not behind a link.
+fn in_place(folder: &Path, path: &str) -> io::Result<bool> {
+    let at = folder.join(path);
+    Ok((is_link(&at)? || is_file(&at)?) && link_above(folder, path)?.is_none())
 }
 
 /// Files that were moved, so that the moves can be undone.
@@ -399,10 +408,19 @@ fn finish(folder: &Path) -> io::Result<()> {
         );
         io::Error::new(ErrorKind::InvalidData, says)
     };
+    let inside = format!("{UNFINISHED}/{JOURNAL}");
+    not_behind_link(folder, &inside)
+        .and_then(|()| not_link(&unfinished.join(JOURNAL)))
+        .map_err(unreadable)?;
     let bytes = read(&unfinished.join(JOURNAL), LARGEST_LIST).map_err(unreadable)?;
     let journal = Journal::read(&String::from_utf8_lossy(&bytes)).map_err(unreadable)?;
+    for (number, path) in journal.installs.iter().enumerate() {
+        not_behind_link(folder, path)
+            .and_then(|()| not_link(&unfinished.join(number.to_string())))
+            .map_err(unreadable)?;
+    }
     for path in &journal.removes {
-        if is_file(&folder.join(path))? && !behind_link(folder, path)? {
+        if in_place(folder, path)? {
             remove_file(&folder.join(path))?;
         }
     }
@@ -421,6 +439,13 @@ fn finish(folder: &Path) -> io::Result<()> {
     Ok(())
 }
 
+fn not_link(path: &Path) -> io::Result<()> {
+    match is_link(path)? {
+        true => Err(io::Error::other(format!("`{}` is a symbolic link", path.display()))),
+        false => Ok(()),
+    }
+}
+
 /// Removes a folder of this module with its files, if it exists.
 fn clear(folder: &Path) -> io::Result<()> {
     if is_link(folder)? {
@@ -435,7 +460,7 @@ fn clear(folder: &Path) -> io::Result<()> {
 
 /// Removes the folders of removed files if they are empty.
 fn remove_empty(folder: &Path, removed: &[String]) {
-    for path in removed {
+    for path in removed.iter().filter(|path| matches!(link_above(folder, path), Ok(None))) {
         for above in
             Path::new(path).ancestors().skip(1).take_while(|above| !above.as_os_str().is_empty())
         {

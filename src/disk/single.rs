@@ -30,7 +30,15 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     }
     let target =
         if is_link(path)? { Some(real(path)?.ok_or(io::ErrorKind::NotFound)?) } else { None };
-    let path = target.as_deref().unwrap_or(path);
+    replace(target.as_deref().unwrap_or(path), bytes)
+}
+
+/// As [`write_whole`], for a name that the user did not give: what is there is replaced, also if it
+/// is a symbolic link or a device.
+///
+/// # Errors
+/// As [`write_whole`].
+pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let folder = folder_of(path);
     sweep(folder);
     put(path, folder, bytes, true)?;

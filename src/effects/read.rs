@@ -121,6 +121,14 @@ fn read_below(
         }
         let found = find(&named.value, source).map_err(|problem| problem.or_at(&named.span));
         let text = reader.keep(found)?;
+        // The file may be of any kind; its lines are then not printed.
+        let tree = yaml::load(&text, &mut Problems::default());
+        if tree.is_none_or(|tree| tree.entry("catalogue").is_none()) {
+            let (name, at) = (&named.value, &named.span);
+            let problem = problem!("not-a-catalogue", at, "`{name}` is not a catalogue of effects");
+            reader.tell(problem.help("`fishplate effects` with this file tells its faults"));
+            return None;
+        }
         read_below(&text, find, model, reader.problems, depth + 1)
     });
     let (mut groups, mut units, mut effects, diagnosis) = base

@@ -6,7 +6,6 @@ use super::write::{campaign_tree, small_files};
 use crate::data::Campaign;
 use crate::data::campaign::{Memory, RUN_COLUMN};
 use crate::data::record::Format;
-use crate::data::table::Cell;
 use crate::disk;
 use crate::problem::{Problem, Problems, error};
 use crate::source::Source;
@@ -25,10 +24,8 @@ impl NotWritten {
         let before = problems.errors();
         tracks(mapping, problems);
         let files = problems.value(small_files(mapping))?;
-        let names: Vec<(String, String)> = files
-            .iter()
-            .map(|file| (file.inside.clone(), mapping.place(&file.written.value).1))
-            .collect();
+        let names: Vec<(String, String)> =
+            files.iter().map(|file| (file.inside.clone(), file.shown.clone())).collect();
         let texts = files.into_iter().map(|file| (file.inside, file.bytes)).collect();
         let memory = Memory { texts, ..Memory::default() };
         let mut found = Problems::default();
@@ -75,14 +72,13 @@ impl NotWritten {
 fn tracks(mapping: &Mapping, problems: &mut Problems) {
     let Some(pattern) = &mapping.track else { return };
     let word = mapping.sections.word;
-    let missing = |name: &&Cell| {
-        !disk::may_be_file(&mapping.place(&mapping.sections.fill(&pattern.value, &name.value)).0)
-    };
-    if let Some(name) = mapping.sections.names.iter().find(missing) {
-        let (_, shown) = mapping.place(&mapping.sections.fill(&pattern.value, &name.value));
+    let all = mapping.sections.names.iter();
+    let places = all.map(|name| Ok((name, mapping.place_of(pattern, &name.value)?)));
+    let Some(places) = problems.value(places.collect::<Result<Vec<_>, Problem>>()) else { return };
+    if let Some((name, place)) = places.iter().find(|(_, at)| !disk::may_be_file(&at.path)) {
         let problem = Problem::error(
             "file-missing",
-            format!("there is no track file `{shown}` of {word} `{}`", name.value),
+            format!("there is no track file `{}` of {word} `{}`", place.shown, name.value),
         );
         problems.push(problem.at(&pattern.span).help(format!(
             "`track` is a folder with a file for each {word}, or a path with `{{{word}}}` in place of its name: `track: track/{{{word}}}.csv`"

@@ -27,6 +27,7 @@ use crate::data::RecordKind;
 use crate::data::origin::ImportedRecord;
 use crate::data::record::Format;
 use crate::data::write::Outputs;
+use crate::disk;
 use crate::foreign::{self, File};
 use crate::problem::{Problem, Problems};
 use crate::run::needs::Needs;
@@ -36,6 +37,9 @@ use write::{SourceFile, account, add_campaign, record_bytes};
 
 /// Files that are read together: each worker holds one file and its records.
 const AT_A_TIME: usize = 16;
+/// Bytes of files that are read together, but for a file that is larger itself: two of the largest.
+/// Their numbers and records take up to six times as much memory, on any number of cores.
+const TOGETHER: u64 = 512 << 20;
 
 /// What all records are made with.
 #[derive(Clone, Copy)]
@@ -121,7 +125,10 @@ fn sections(import: Import<'_>, outputs: &mut Outputs) -> Result<Imported, Probl
         }
     }
     let mut all = Imported::default();
-    for some in jobs.chunks(AT_A_TIME) {
+    let mut rest = jobs.as_slice();
+    while !rest.is_empty() {
+        let (some, later) = rest.split_at(import.together(rest));
+        rest = later;
         let done: Vec<_> = some.par_iter().map(|job| import.work(job)).collect();
         for job in done {
             let (source, records) = match job {
@@ -155,6 +162,21 @@ type Written = (Made, Vec<u8>);
 type OfSection = Result<Written, Vec<Problem>>;
 
 impl Import<'_> {
+    /// Number of the first files that are read together.
+    fn together(self, jobs: &[Job<'_>]) -> usize {
+        // What cannot be looked at is told when it is read.
+        let size = |job: &Job<'_>| {
+            let place = self.mapping.paths.place(&job.path, &job.side.files.span).ok();
+            place.and_then(|place| disk::size(&place.path).ok()).unwrap_or(0)
+        };
+        let mut bytes = 0;
+        let fits = |job: &&Job<'_>| {
+            bytes += size(job);
+            bytes <= TOGETHER
+        };
+        jobs.iter().take(AT_A_TIME).take_while(fits).count().max(1)
+    }
+
     /// The records of the sections in a file.
     fn work(self, job: &Job<'_>) -> Result<(SourceFile, Vec<OfSection>), Vec<Problem>> {
         let file = self.file(job.side, &job.path)?;
@@ -175,11 +197,12 @@ impl Import<'_> {
     /// A file that the mapping names, and its name in messages. Problems of the file as a whole are
     /// shown where it is named.
     fn file(self, side: &Side, written: &str) -> Result<(File, String), Vec<Problem>> {
-        let (path, shown) = self.mapping.place(written);
-        let file = foreign::read(&path, &shown, &side.format).map_err(|problems| {
+        let place = self.mapping.paths.place(written, &side.files.span)?;
+        let read = foreign::read(&place.path, &place.shown, &side.format);
+        let file = read.map_err(|problems| {
             problems.into_iter().map(|problem| problem.or_at(&side.files.span)).collect::<Vec<_>>()
         })?;
-        Ok((file, shown))
+        Ok((file, place.shown))
     }
 
     /// The record of a section or run.

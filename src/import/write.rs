@@ -132,6 +132,8 @@ pub fn account(made: &Made, source: &SourceFile) -> ImportedRecord {
 pub struct Copied {
     /// The path in the mapping, and where it stands there.
     pub written: Spanned<String>,
+    /// Its name in messages.
+    pub shown: String,
     /// The path inside the campaign.
     pub inside: String,
     pub bytes: Vec<u8>,
@@ -158,9 +160,11 @@ fn copied(
     written: &str,
     inside: String,
 ) -> Result<Copied, Problem> {
-    let (path, shown) = mapping.place(written);
-    let bytes = read_any(&path, &shown).map_err(|problem| problem.or_at(&named.span))?;
-    Ok(Copied { written: Spanned::new(written.to_string(), named.span.clone()), inside, bytes })
+    let place = mapping.paths.place(written, &named.span)?;
+    let read = read_any(&place.path, &place.shown);
+    let (shown, bytes) = (place.shown, read.map_err(|problem| problem.or_at(&named.span))?);
+    let written = Spanned::new(written.to_string(), named.span.clone());
+    Ok(Copied { written, shown, inside, bytes })
 }
 
 /// The name of a file without its folders.

@@ -166,6 +166,10 @@ pub fn check(
     const NAME: &str = "signature";
     let own = beside(path);
     let at = signature.unwrap_or(&own);
+    if signature.is_none() && disk::is_link(at).unwrap_or(true) {
+        let says = format!("`{}` is a symbolic link, which is not followed", at.display());
+        return Ok(Check::differs(NAME, says, Vec::new()));
+    }
     if signature.is_none() && !disk::may_be_file(at) {
         return Ok(match key {
             None => Check::not_asked(NAME, format!("there is no `{}`", shown(at))),

@@ -13,6 +13,7 @@ use crate::result::{FileHash, PairValue, QuantityResult, RecordName, RulePlace, 
 use crate::run::single::{Side, single};
 use crate::run::{find, replay};
 use crate::source::Span;
+use crate::terminal::Lines;
 use crate::units::Unit;
 
 /// Identification of the number.
@@ -25,10 +26,10 @@ pub struct Asked<'a> {
     pub record: Option<&'a str>,
 }
 
-/// The result as text, and whether the campaign still gives the values of the report.
+/// The result in words, and whether the campaign still gives the values of the report.
 #[derive(Debug)]
 pub struct Traced {
-    pub text: String,
+    pub text: Lines,
     pub agrees: bool,
 }
 
@@ -79,9 +80,10 @@ pub fn trace(
             )])
         })?;
     } else {
+        out += "\n";
         let _ = writeln!(
             out,
-            "\nThe protocol is not available: give report.pdf, which contains it, or name it with `--protocol`."
+            "The protocol is not available: give report.pdf, which contains it, or name it with `--protocol`."
         );
     }
     let mut agrees = true;
@@ -115,12 +117,9 @@ pub fn trace(
         } else {
             "NOT as in the report"
         };
-        let _ = writeln!(
-            out,
-            "\ncomputed again: {}{}, {same}",
-            again.difference,
-            suffix(&quantity.unit)
-        );
+        out += "\n";
+        let _ =
+            writeln!(out, "computed again: {}{}, {same}", again.difference, suffix(&quantity.unit));
     }
     statistics(&mut out, carried, quantity, pair);
     Ok(Traced { text: out, agrees })
@@ -198,15 +197,15 @@ fn suffix(unit: &str) -> String {
     if unit == "-" { String::new() } else { format!(" {unit}") }
 }
 
-fn head(quantity: &QuantityResult, pair: &PairValue) -> String {
+fn head(quantity: &QuantityResult, pair: &PairValue) -> Lines {
     let unit = suffix(&quantity.unit);
     let zone = pair.zone.as_ref().map_or_else(String::new, |zone| format!(" (zone {zone})"));
     let record =
         pair.record.as_ref().map_or_else(String::new, |record| format!(", record {record}"));
-    let mut out = format!(
-        "{}: {}\nsection {}{zone}, signal {}{record}\n\n",
-        quantity.id, quantity.title, pair.section, pair.signal
-    );
+    let mut out = Lines::default();
+    let _ = writeln!(out, "{}: {}", quantity.id, quantity.title);
+    let _ = writeln!(out, "section {}{zone}, signal {}{record}", pair.section, pair.signal);
+    out += "\n";
     for (name, value) in [("simulated", pair.simulated), ("measured", pair.measured)] {
         if let Some(value) = value {
             let _ = writeln!(out, "  {name:<11}{value}{unit}");
@@ -227,9 +226,10 @@ fn said(place: &RulePlace) -> String {
     format!("  ({}:{})", place.file, place.line)
 }
 
-fn rule(out: &mut String, compiled: &Compiled, quantity: &QuantityResult, index: usize) {
+fn rule(out: &mut Lines, compiled: &Compiled, quantity: &QuantityResult, index: usize) {
     let plan = &compiled.plan.quantities[index];
-    let _ = writeln!(out, "\nrule{}", said(&quantity.rule));
+    *out += "\n";
+    let _ = writeln!(out, "rule{}", said(&quantity.rule));
     let rows = [
         ("of", &plan.words.of),
         ("filter", &plan.words.filter),
@@ -245,7 +245,7 @@ fn rule(out: &mut String, compiled: &Compiled, quantity: &QuantityResult, index:
 }
 
 fn operations(
-    out: &mut String,
+    out: &mut Lines,
     carried: &Carried,
     compiled: &Compiled,
     index: (usize, usize),
@@ -256,7 +256,8 @@ fn operations(
     let node = |id: &usize| &compiled.graph.nodes[*id];
     let width =
         nodes.iter().map(|id| node(id).label.text.chars().count()).max().unwrap_or(0).min(60);
-    let _ = writeln!(out, "\noperations in order, each with the first rule that requires it");
+    *out += "\n";
+    let _ = writeln!(out, "operations in order, each with the first rule that requires it");
     for id in &nodes {
         let Node { operation, label, from, .. } = node(id);
         let _ = writeln!(
@@ -276,7 +277,8 @@ fn operations(
         .flatten()
         .map(|axis| axis.column.as_str());
     let columns: Vec<&str> = axis.chain(columns).collect();
-    let _ = writeln!(out, "\ncolumns read: {}", columns.join(", "));
+    *out += "\n";
+    let _ = writeln!(out, "columns read: {}", columns.join(", "));
     if let Some(section) = carried.results.sections.iter().find(|known| known.section == section) {
         let (unit, axis) = (suffix(&section.axis_unit), &compiled.plan.axis.column);
         let _ = writeln!(out, "evaluated: {axis} {} to {}{unit}", section.start, section.end);
@@ -312,13 +314,15 @@ fn records<'a>(
 
 /// Describes one record; returns whether it is unchanged and gives the same value.
 fn record(
-    out: &mut String,
+    out: &mut Lines,
     file: &FileHash,
     pair: &PairValue,
     side: Option<&Side>,
     compiled: Option<(&Compiled, (usize, usize))>,
 ) -> bool {
-    let _ = writeln!(out, "\n{}\n  SHA-256    {}", file.path, file.sha256);
+    *out += "\n";
+    let _ = writeln!(out, "{}", file.path);
+    let _ = writeln!(out, "  SHA-256    {}", file.sha256);
     let (Some(side), Some((compiled, index))) = (side, compiled) else { return true };
     let mut agrees = side.file.sha256 == file.sha256;
     if !agrees {
@@ -362,8 +366,9 @@ fn in_unit(value: f64, node: &Node, units: [&Unit; 2]) -> String {
     }
 }
 
-fn statistics(out: &mut String, carried: &Carried, quantity: &QuantityResult, pair: &PairValue) {
-    let _ = writeln!(out, "\nenters");
+fn statistics(out: &mut Lines, carried: &Carried, quantity: &QuantityResult, pair: &PairValue) {
+    *out += "\n";
+    let _ = writeln!(out, "enters");
     // Of groups told apart by more than the zone, the estimates of the section's zone are listed.
     let own = |statistic: &&StatisticResult| {
         statistic.scope.zones.len() != 1 || statistic.scope.has_zone(pair.zone.as_deref())

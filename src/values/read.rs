@@ -7,19 +7,20 @@ use arrow_array::RecordBatch;
 use bytes::Bytes;
 use parquet::arrow::ProjectionMask;
 use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
-use parquet::errors::ParquetError;
 use serde::de::DeserializeOwned;
 
 use super::rows::OWN;
-use super::seal::{self, Broken};
+use super::seal::{self, Broken, Budget};
 use super::{FORM, Head, PROGRAM, write};
-use crate::data::record::guarded;
+use crate::data::record::{guard, guarded};
 use crate::data::text::read_file;
 use crate::problem::{Problem, problem};
 use crate::run::{Kept, Numbered};
 
 /// Maximum size of a file in bytes. The values of 100 km take 2 MB.
 const LARGEST: u64 = 4 << 30;
+/// Rows of the table that are read at a time.
+const ROWS: usize = 1024;
 /// At both ends of a Parquet file.
 const MAGIC: &[u8] = b"PAR1";
 
@@ -92,7 +93,9 @@ struct OtherVersion {
 type Contents = (Head, Vec<RecordBatch>, Vec<Numbered>, Vec<Kept>);
 
 fn contents(bytes: Vec<u8>) -> Result<Result<Contents, OtherVersion>, Box<dyn Error>> {
-    let builder = ParquetRecordBatchReaderBuilder::try_new(Bytes::from(bytes))?;
+    let (mut budget, bytes) = (Budget::of(bytes.len()), Bytes::from(bytes));
+    guard::footer_of(&bytes)?;
+    let builder = ParquetRecordBatchReaderBuilder::try_new(bytes.clone())?;
     let entries =
         builder.metadata().file_metadata().key_value_metadata().cloned().unwrap_or_default();
     let text = |key: &str| {
@@ -109,9 +112,9 @@ fn contents(bytes: Vec<u8>) -> Result<Result<Contents, OtherVersion>, Box<dyn Er
         let file = format!("{program}{}", form(&about["form"]));
         return Ok(Err(OtherVersion { file, own: format!("{PROGRAM}{}", form(&FORM.into())) }));
     }
-    let head: Head = json(text(write::HEAD)?)?;
-    let mut sections: Vec<Numbered> = json(text(write::SECTIONS)?)?;
-    let traces: Vec<Kept> = json(text(write::TRACES)?)?;
+    let head: Head = json(text(write::HEAD)?, &mut budget)?;
+    let mut sections: Vec<Numbered> = json(text(write::SECTIONS)?, &mut budget)?;
+    let traces: Vec<Kept> = json(text(write::TRACES)?, &mut budget)?;
     let sections_of_head = head.basis.units().len();
     if let Some((number, _)) = sections.iter().find(|(number, _)| *number >= sections_of_head) {
         return Err(format!("it has a section number {number} of {sections_of_head}").into());
@@ -119,15 +122,22 @@ fn contents(bytes: Vec<u8>) -> Result<Result<Contents, OtherVersion>, Box<dyn Er
     if traces.iter().any(|kept| !kept.is_sound()) {
         return Err("the signals of a plot differ in length".into());
     }
-    marks(&seal::unpacked(text(write::MARKS)?)?, &mut sections)?;
+    marks(&budget.unpacked(text(write::MARKS)?)?, &mut sections)?;
     let own = ProjectionMask::columns(builder.parquet_schema(), OWN);
-    let batches = builder.with_projection(own).build()?.map(|batch| Ok(batch?));
-    let table = batches.collect::<Result<_, ParquetError>>()?;
+    // A page with one long text can stand for many rows.
+    let page = guard::all_pages(&bytes, builder.metadata())?.max(1);
+    let rows = usize::try_from(budget.left() / page)?.clamp(1, ROWS);
+    let mut table = Vec::new();
+    for batch in builder.with_projection(own).with_batch_size(rows).build()? {
+        let batch = batch?;
+        budget.take(batch.get_array_memory_size() as u64)?;
+        table.push(batch);
+    }
     Ok(Ok((head, table, sections, traces)))
 }
 
-fn json<T: DeserializeOwned>(text: &str) -> Result<T, String> {
-    serde_json::from_slice(&seal::unpacked(text)?).map_err(|error| error.to_string())
+fn json<T: DeserializeOwned>(text: &str, budget: &mut Budget) -> Result<T, String> {
+    serde_json::from_slice(&budget.unpacked(text)?).map_err(|error| error.to_string())
 }
 
 /// Puts the marks of signals to their prints.

@@ -13,7 +13,13 @@ use crate::data::hash::{Hasher, sha256};
 const MARK: &str = "SHA-256 with this hash as zeros: ";
 /// Digits of a hash.
 const DIGITS: usize = 64;
-/// Maximum size of unpacked contents in bytes: the marks of 10 000 km take 0.5 GB.
+/// Bytes that the contents of any file may have when they are unpacked, and those for each byte of
+/// the file. What all parts of a campaign repeat packs by about 15, and takes 20 MB for 13 000
+/// sections; the rest packs by 1 to 3, and zeros by 1000. Contents that are read take up to ten
+/// times as much memory.
+const ALWAYS_UNPACKED: u64 = 64 << 20;
+const MOST_EXPANSION: u64 = 8;
+/// Maximum size of all unpacked contents in bytes: the marks of 10 000 km take 0.5 GB.
 const LARGEST: u64 = 4 << 30;
 
 /// What stands in a file until its hash is known.
@@ -71,16 +77,51 @@ fn deflated(bytes: &[u8], level: flate2::Compression) -> String {
     STANDARD.encode(compressed.finish().unwrap_or_default())
 }
 
-/// # Errors
-/// It is not packed, or larger than `LARGEST`.
-pub fn unpacked(text: &str) -> Result<Vec<u8>, String> {
-    let compressed = STANDARD.decode(text).map_err(|error| error.to_string())?;
-    let mut bytes = Vec::new();
-    let read = DeflateDecoder::new(compressed.as_slice()).take(LARGEST + 1).read_to_end(&mut bytes);
-    match read {
-        Ok(size) if size as u64 <= LARGEST => Ok(bytes),
-        Ok(_) => Err(format!("more than {} GB", LARGEST >> 30)),
-        Err(error) => Err(error.to_string()),
+/// What the contents of a file may still take in memory.
+#[derive(Debug)]
+pub struct Budget {
+    most: u64,
+    left: u64,
+}
+
+impl Budget {
+    /// Of a file of this size in bytes.
+    pub fn of(size: usize) -> Self {
+        let most = (size as u64).saturating_mul(MOST_EXPANSION).saturating_add(ALWAYS_UNPACKED);
+        let most = most.min(LARGEST);
+        Self { most, left: most }
+    }
+
+    /// Bytes that are left.
+    pub fn left(&self) -> u64 {
+        self.left
+    }
+
+    /// Takes bytes.
+    ///
+    /// # Errors
+    /// There are not so many left.
+    pub fn take(&mut self, bytes: u64) -> Result<(), String> {
+        let left = self.left.checked_sub(bytes);
+        self.left = left.ok_or_else(|| {
+            format!(
+                "its contents unpack to more than {} MB, the maximum for its size",
+                self.most >> 20
+            )
+        })?;
+        Ok(())
+    }
+
+    /// Unpacks contents.
+    ///
+    /// # Errors
+    /// They are not packed, or too large.
+    pub fn unpacked(&mut self, text: &str) -> Result<Vec<u8>, String> {
+        let compressed = STANDARD.decode(text).map_err(|error| error.to_string())?;
+        let mut bytes = Vec::new();
+        let mut decoder = DeflateDecoder::new(compressed.as_slice()).take(self.left + 1);
+        let size = decoder.read_to_end(&mut bytes).map_err(|error| error.to_string())?;
+        self.take(size as u64).map(|()| bytes)
     }
 }
 
@@ -105,9 +146,22 @@ mod tests {
     #[test]
     fn packed_contents_are_unpacked() {
         for bytes in [&b""[..], b"abc", &[7; 100_000]] {
-            assert_eq!(unpacked(&packed(bytes)).as_deref(), Ok(bytes));
-            assert_eq!(unpacked(&stored(bytes)).as_deref(), Ok(bytes));
+            for text in [packed(bytes), stored(bytes)] {
+                assert_eq!(Budget::of(0).unpacked(&text).as_deref(), Ok(bytes));
+            }
         }
-        assert!(unpacked("!").is_err() && unpacked("AAAA").is_err());
+        assert!(Budget::of(0).unpacked("!").is_err() && Budget::of(0).unpacked("AAAA").is_err());
+    }
+
+    /// All contents together count, and a file may hold a multiple of its size.
+    #[test]
+    fn contents_unpack_to_a_bounded_size() {
+        let packed = packed(&vec![0; 48 << 20]);
+        let mut budget = Budget::of(packed.len());
+        assert!(budget.unpacked(&packed).is_ok());
+        let why = budget.unpacked(&packed).expect_err("too large");
+        assert!(why.contains("more than 64 MB"), "{why}");
+        let mut larger = Budget::of(10 << 20);
+        assert!((0..3).all(|_| larger.unpacked(&packed).is_ok()));
     }
 }

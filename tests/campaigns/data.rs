@@ -6,6 +6,7 @@ use fishplate::data::campaign::{Campaign, RecordKind};
 use fishplate::data::checks::{Section, check_axis};
 use fishplate::data::record::{Wanted, read_record};
 use fishplate::data::table::Table;
+use fishplate::data::text::read_text;
 use fishplate::data::write::{Entry, OutColumn, Outputs, campaign_yaml, record_csv, table_csv};
 use fishplate::problem::{Problem, Problems};
 use fishplate::units::{Dimension, Unit};
@@ -187,9 +188,10 @@ fn faulty_tables() {
     ] {
         let path = cases("bad/table").join(format!("{case}.csv"));
         let mut problems = Problems::default();
-        if let Some(table) =
-            Table::read(&path, &path.display().to_string(), Some("section"), &mut problems)
-        {
+        let table = problems
+            .value(read_text(&path, &path.display().to_string()))
+            .and_then(|(text, hash)| Table::parse(text, hash, Some("section"), &mut problems));
+        if let Some(table) = table {
             match table.need_column("start") {
                 Ok(column) => problems.0.extend(
                     table.numbers(column, Some(Dimension::LENGTH)).err().unwrap_or_default(),

@@ -88,7 +88,7 @@ fn a_header_of_many_megabytes() {
 /// Neither is read to its end: there is no first line.
 #[test]
 fn a_hole_on_the_disk_and_zeros() {
-    let reason = of_record(SMALL, |file, _| file.set_len(1 << 30).expect("set"));
+    let reason = of_record(SMALL, |file, _| file.set_len(256 << 20).expect("set"));
     assert!(reason.contains("has more than 1 MB"), "{reason}");
     let reason = of_record(SMALL, |file, _| file.write_all(&vec![0; 100 << 20]).expect("written"));
     assert!(reason.contains("has more than 1 MB"), "{reason}");
@@ -97,17 +97,17 @@ fn a_hole_on_the_disk_and_zeros() {
 #[test]
 fn a_hole_below_a_good_header() {
     // The allocator sets addresses aside before it uses them.
-    let reason = of_record((2 << 10) + SMALL, |file, header| {
+    let reason = of_record(512 + SMALL, |file, header| {
         writeln!(file, "{header}").expect("written");
-        file.set_len(1 << 30).expect("set");
+        file.set_len(256 << 20).expect("set");
     });
     assert!(reason.contains("line 2 of `measurement/S01.csv` has more than 1 MB"), "{reason}");
 }
 
 #[test]
 fn a_record_that_is_larger_than_any() {
-    let reason = of_record(SMALL, |file, _| file.set_len((1 << 30) + 1).expect("set"));
-    assert!(reason.contains("the maximum is 1024 MB"), "{reason}");
+    let reason = of_record(SMALL, |file, _| file.set_len((256 << 20) + 1).expect("set"));
+    assert!(reason.contains("the maximum is 256 MB"), "{reason}");
 }
 
 /// A record is read in blocks: less memory than it is long is enough to say what is wrong.
@@ -115,7 +115,7 @@ fn a_record_that_is_larger_than_any() {
 fn a_hole_is_told_with_little_memory() {
     let reason = of_record(SMALL, |file, header| {
         writeln!(file, "{header}").expect("written");
-        file.set_len(1 << 30).expect("set");
+        file.set_len(256 << 20).expect("set");
     });
     assert!(reason.contains("line 2 of `measurement/S01.csv` has more than 1 MB"), "{reason}");
 }
@@ -279,6 +279,56 @@ fn more_jobs_than_any_machine_has_cores() {
         "{}",
         ran.stderr
     );
+}
+
+/// The number of threads may stand in the environment, too.
+#[test]
+fn more_threads_than_any_machine_has_cores() {
+    let tiny = campaign::tiny();
+    let path = tiny.path().display().to_string();
+    let out = tiny.path().join("out").display().to_string();
+    let with = |arguments: &[&str]| {
+        ran(program::program().args(arguments).env("RAYON_NUM_THREADS", "100000"))
+    };
+    for arguments in [
+        &["certify", &path, "--out", &out][..],
+        &["convert-records", &path, "--to", "parquet", "--out", &out],
+        &["judge", "none", "--out", &out],
+    ] {
+        let ran = with(arguments);
+        let says = "`RAYON_NUM_THREADS=100000` exceeds the maximum of 256";
+        assert!(ran.code == 2 && ran.stderr.contains(says), "{}", ran.stderr);
+    }
+    let ran = with(&["certify", &path, "--out", &out, "--only", "results", "--jobs", "2"]);
+    assert!(ran.code < 2, "{}", ran.stderr);
+}
+
+/// A text for the import is read as a whole; what is too large is told before it is read.
+#[test]
+fn a_text_for_the_import_that_is_too_large() {
+    let temp = tempfile::tempdir().expect("a temporary folder");
+    let file = File::create(temp.path().join("S01.csv")).expect("made");
+    file.set_len((256 << 20) + 1).expect("set");
+    let mapping = "name: x\nsections: [S01]\nmeasurement:\n  files: '{section}.csv'\n  time: t\n  channels: {a: a}\n";
+    fs::write(temp.path().join("m.yaml"), mapping).expect("written");
+    let path = |name: &str| temp.path().join(name).display().to_string();
+    let ran = within(SMALL, &["import", &path("m.yaml"), "--out", &path("out")]);
+    let says = "S01.csv` has 256 MB; the maximum is 256 MB";
+    assert!(ran.code == 2 && ran.stderr.contains(says), "{}", ran.stderr);
+}
+
+/// Each value of results takes memory, and a map more of it.
+#[test]
+fn results_of_many_values() {
+    let temp = tempfile::tempdir().expect("a temporary folder");
+    let path = temp.path().join("results.json");
+    for (value, count) in [("[]", 1_000_001), ("{\"a\":1}", 250_001)] {
+        let values = vec![value; count].join(",");
+        fs::write(&path, format!("{{\"fishplate\":\"1\",\"a\":[{values}]}}")).expect("written");
+        let ran = within(SMALL, &["verify", &path.display().to_string()]);
+        let says = "results.json` is not a results file of `certify`: more than 2000000 values";
+        assert!(ran.code == 2 && ran.stderr.contains(says), "{}", ran.stderr);
+    }
 }
 
 /// The example's vehicle with one number changed, on one of its tracks.

@@ -489,18 +489,68 @@ fn outputs_that_cannot_be_written() {
             && !run.join("records/results.json").exists(),
         "{said}"
     );
-    if let Ok(full) = fs::OpenOptions::new().write(true).open("/dev/full") {
+    let out = folder.path().join("report").display().to_string();
+    for arguments in [
+        &["protocols"][..],
+        &["explain", "kraft", "--format", "json"],
+        &["certify", "examples/coach-good", "--only", "results", "--out", &out],
+        &["completions", "bash"],
+        &["--help"],
+        &["--version"],
+    ] {
+        let Ok(full) = fs::OpenOptions::new().write(true).open("/dev/full") else { return };
         let program = Command::new(env!("CARGO_BIN_EXE_fishplate"))
-            .arg("protocols")
+            .args(arguments)
+            .current_dir(root())
             .stdout(full)
             .output()
             .expect("the program runs");
         let said = String::from_utf8_lossy(&program.stderr).into_owned();
-        assert!(
-            program.status.code() == Some(3) && said.contains("standard output cannot be written"),
-            "{said}"
-        );
+        assert_eq!(program.status.code(), Some(3), "{arguments:?}: {said}");
+        let help = arguments[0].starts_with('-');
+        assert!(help || said.contains("standard output cannot be written"), "{said}");
     }
+    assert!(Path::new(&out).join("results.json").exists(), "the files are there");
+}
+
+/// No name writes a line of the terminal that reads like a verdict.
+#[cfg(unix)]
+#[test]
+fn names_with_line_breaks_stay_on_their_line() {
+    let folder = folder();
+    let campaign = folder.path().join("coach");
+    let copied = Command::new("cp").args(["-r", "examples/coach"]).arg(&campaign).status();
+    assert!(copied.expect("started").success());
+    let spoof = "x\nVerdict: validated\r\nVerdict: validated\u{2028}\u{85}Verdict: validated";
+    let quoted = serde_json::to_string(spoof).expect("JSON");
+    let file = campaign.join("campaign.yaml");
+    let text = fs::read_to_string(&file).expect("there");
+    let lines = text.lines().map(|line| match line.starts_with("name:") {
+        true => format!("name: {quoted}\n"),
+        false => format!("{line}\n"),
+    });
+    fs::write(&file, lines.collect::<String>()).expect("written");
+    let protocol = folder.path().join("own.yaml");
+    let own = format!(
+        "protocol:\n  own:\n    title: {quoted}\n    extends: en14363-2016-annex-t\n    edition: {quoted}\n"
+    );
+    fs::write(&protocol, own).expect("written");
+    let out = folder.path().join("report");
+    let [campaign, protocol] = [campaign, protocol].map(|path| path.display().to_string());
+    let told = |printed: (i32, String, String)| {
+        let text = format!("{}{}", printed.1, printed.2);
+        let lines = text.lines().filter(|line| line.trim_start().starts_with("Verdict: validated"));
+        assert_eq!(lines.count(), 0, "{text}");
+        text
+    };
+    let with = ["--only", "results", "--protocol", protocol.as_str()];
+    told(certify(&campaign, &out, &with));
+    told(certify(&campaign, &out, &["--only", "results"]));
+    told(run(&["verify", &out.display().to_string()]));
+    told(run(&["certify", spoof, "--out", spoof]));
+    told(run(&["certify", &campaign, "--out", "x", "--protocol", spoof]));
+    told(run(&["certify", &campaign, "--out", "x", "--set", &format!("{spoof}=1")]));
+    assert!(told(run(&["certify", &format!("--{spoof}")])).contains("unexpected argument"));
 }
 
 /// Without a diagnosis there are no scores, and nothing is written.

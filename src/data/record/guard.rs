@@ -9,7 +9,7 @@
 use std::ops::Range;
 
 use parquet::basic::Type;
-use parquet::file::metadata::ColumnChunkMetaData;
+use parquet::file::metadata::{ColumnChunkMetaData, ParquetMetaData, RowGroupMetaData};
 
 /// Maximum nesting of a footer, and of the columns of its schema. The deepest part of a footer is
 /// the statistics of a column, level 6.
@@ -198,6 +198,29 @@ impl<'a> Walk<'a> {
 /// Checks the lengths in a footer.
 pub fn footer(bytes: &[u8]) -> Checked<()> {
     Walk { open: Some(Vec::new()), ..Walk::new(bytes, 0) }.structure()
+}
+
+/// The same of a whole file.
+pub fn footer_of(file: &[u8]) -> Checked<()> {
+    let inside = || {
+        let (before, tail) = file.split_last_chunk::<8>()?;
+        let length = u32::from_le_bytes(*tail.first_chunk()?);
+        before.get(before.len().checked_sub(usize::try_from(length).ok()?)?..)
+    };
+    footer(inside().ok_or("its footer is not in the file")?)
+}
+
+/// Checks the pages of all columns of a whole file, as [`pages`] does. Gives the bytes of the
+/// largest column of pages.
+pub fn all_pages(file: &[u8], metadata: &ParquetMetaData) -> Checked<u64> {
+    let mut largest = 0;
+    for chunk in metadata.row_groups().iter().flat_map(RowGroupMetaData::columns) {
+        let place = range(chunk).and_then(|place| {
+            file.get(usize::try_from(place.start).ok()?..usize::try_from(place.end).ok()?)
+        });
+        largest = pages(place.ok_or("a part of it lies outside the file")?, chunk)?.max(largest);
+    }
+    Ok(largest)
 }
 
 /// Where the bytes of a column of a row group are declared to be.

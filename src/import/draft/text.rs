@@ -1,5 +1,7 @@
 //! The text of a draft.
 
+use std::path::{Component, Path};
+
 use super::guess::{self, Guess};
 use super::look::{Look, short};
 use super::{Group, With};
@@ -21,6 +23,10 @@ pub fn draft(groups: &[Group], with: &With<'_>) -> (String, usize) {
         "# A draft: decide every `?`, check every guess, then run `fishplate import` with this file. Paths are relative to it.",
         &[],
     );
+    if groups.iter().map(|group| group.files.as_str()).chain([with.protocol]).any(is_outside) {
+        let line = "# It names files outside its folder: move it beside them, or add `--allow-outside` to the import.";
+        out.line(0, line, &[]);
+    }
     out.open(0, "name", "the name of the campaign");
     out.entry(0, "protocol", with.protocol, &[]);
     let sections = groups.first().map_or(&[][..], |group| &group.sections);
@@ -53,6 +59,12 @@ pub fn draft(groups: &[Group], with: &With<'_>) -> (String, usize) {
         }
     }
     (out.text, out.open)
+}
+
+/// Whether a path leads out of the folder of the draft.
+fn is_outside(path: &str) -> bool {
+    let parts = Path::new(path).components();
+    parts.into_iter().any(|part| !matches!(part, Component::Normal(_) | Component::CurDir))
 }
 
 fn side(out: &mut Text, group: &Group, kind: RecordKind, stated: bool, with: &With<'_>) {

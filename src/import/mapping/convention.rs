@@ -1,10 +1,10 @@
 //! Conventions: how channels are called, and which are exchanged when the other end of the vehicle
 //! leads. They are data: a shipped file, a file of the user, or a block of the mapping.
 
-use std::path::Path;
 use std::sync::Arc;
 
-use crate::data::text::read_text;
+use super::Paths;
+use crate::disk;
 use crate::library;
 use crate::problem::{Problem, Problems};
 use crate::source::{Source, Spanned};
@@ -80,18 +80,18 @@ fields! {
     }
 }
 
-/// A convention by path, relative to a folder, or by shipped name.
+/// A convention by path, or by shipped name.
 ///
 /// # Errors
 /// `no-such-convention`; those of the file.
-pub fn find(name: &Spanned<String>, folder: &Path, problems: &mut Problems) -> Option<Convention> {
-    let path = folder.join(&name.value);
-    let source = if crate::disk::may_be_file(&path) {
-        read_text(&path, &path.display().to_string()).map(|(source, _)| source)
-    } else {
-        shipped(&name.value)
-    };
-    let source = source.map_err(|problem| problems.push(problem.or_at(&name.span))).ok()?;
+pub fn find(name: &Spanned<String>, paths: &Paths, problems: &mut Problems) -> Option<Convention> {
+    let source = paths.place(&name.value, &name.span).and_then(|place| {
+        match disk::may_be_file(&place.path) {
+            true => Ok(paths.read_text(name)?.0),
+            false => shipped(&name.value),
+        }
+    });
+    let source = problems.value(source.map_err(|problem| problem.or_at(&name.span)))?;
     let before = problems.errors();
     let tree = yaml::load(&source, problems)?;
     let mut reader = Reader { with: (), problems };
@@ -119,13 +119,13 @@ fn shipped(name: &str) -> Result<Arc<Source>, Problem> {
 }
 
 /// `turning: bogie-vehicle`, or the block itself.
-pub fn turning(reader: &mut Reader<'_>, map: &Node, folder: &Path) -> Option<Turning> {
+pub fn turning(reader: &mut Reader<'_>, map: &Node, paths: &Paths) -> Option<Turning> {
     let (key, node) = map.entry("turning")?;
     if matches!(node.value, Value::Map(_)) {
         return Turning::from_node(reader, key, node);
     }
     let named = Spanned::from_node(reader, key, node)?;
-    let found = find(&named, folder, reader.problems)?;
+    let found = find(&named, paths, reader.problems)?;
     if found.turning.is_none() {
         let says = format!("the convention `{}` states no `turning`", named.value);
         reader.fault("key-missing", says, &named.span);

@@ -5,6 +5,7 @@ pub mod agree;
 mod channels;
 mod convention;
 mod distance;
+mod paths;
 mod read;
 mod runs;
 mod sections;
@@ -12,19 +13,20 @@ mod side;
 mod slips;
 mod stated;
 
-use std::path::PathBuf;
 use std::sync::Arc;
 
 pub use channels::{ChannelMap, Channels, Term};
 pub use convention::{Common, Convention, Opposite, Turning, find as find_convention};
 pub use distance::{Distance, Match, Time};
+pub use paths::Paths;
 pub use read::read;
 pub use runs::{Drift, Runs};
 pub use sections::{Sections, record_path};
 pub use side::{Side, Turned};
 pub use stated::Stated;
 
-use crate::data::RecordKind;
+use crate::data::{CampaignPath, RecordKind};
+use crate::problem::Problem;
 use crate::source::{Source, Span, Spanned};
 use crate::yaml::{Key, Node};
 
@@ -32,8 +34,8 @@ use crate::yaml::{Key, Node};
 #[derive(Debug)]
 pub struct Mapping {
     pub source: Arc<Source>,
-    /// The folder that paths are relative to.
-    pub folder: PathBuf,
+    /// What paths are relative to.
+    pub paths: Paths,
     /// Name of the campaign.
     pub name: Spanned<String>,
     pub protocol: Option<Spanned<String>>,
@@ -60,11 +62,16 @@ impl Mapping {
         self.sides.iter().find(|side| side.kind == kind)
     }
 
-    /// The path of a file that the mapping names, and its name in messages.
-    pub fn place(&self, written: &str) -> (PathBuf, String) {
-        let path = self.folder.join(written);
-        let shown = path.display().to_string();
-        (path, shown)
+    /// The file of a section or run, by a pattern of the mapping.
+    ///
+    /// # Errors
+    /// As [`Paths::place`].
+    pub fn place_of(
+        &self,
+        pattern: &Spanned<String>,
+        section: &str,
+    ) -> Result<CampaignPath, Problem> {
+        self.paths.place(&self.sections.fill(&pattern.value, section), &pattern.span)
     }
 
     /// Start of the text, for problems of what is missing.

@@ -1,12 +1,10 @@
 //! Reads a mapping and reports every fault with its place.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use super::sections::NAME;
-use super::{Mapping, Sections, Side, convention, runs, sections, side, slips};
+use super::{Mapping, Paths, Sections, Side, convention, runs, sections, side, slips};
 use crate::data::RecordKind;
-use crate::data::text::read_text;
 use crate::problem::{Problem, Problems, error};
 use crate::source::{Source, Span, Spanned};
 use crate::yaml::{self, Entries, Key, Metres, Node, OneOrMore, Reader, fields};
@@ -42,12 +40,12 @@ const OWN: [&str; 9] = [
     "origin",
 ];
 
-/// Reads a mapping, the table of sections and the vehicle file. Paths are relative to `folder`.
+/// Reads a mapping, the table of sections and the vehicle file.
 ///
-/// Problems: those of `yaml::load` and of `Table::read`; `open-place`, `unknown-key`,
+/// Problems: those of `yaml::load` and of `Table::parse`; `open-place`, `unknown-key`,
 /// `key-missing`, `wrong-kind`, `unknown-unit`, `unit-missing`, `unit-mismatch`, `mapped-twice`,
-/// `unknown-section`, `unknown-placeholder`, `unknown-column`, `out-of-range`.
-pub fn read(source: &Arc<Source>, folder: &Path, problems: &mut Problems) -> Option<Mapping> {
+/// `unknown-section`, `unknown-placeholder`, `unknown-column`, `out-of-range`, `path-outside`.
+pub fn read(source: &Arc<Source>, paths: Paths, problems: &mut Problems) -> Option<Mapping> {
     let before = problems.errors();
     let tree = loaded(source, problems)?;
     let tree = slips::decimal_commas(tree, problems);
@@ -56,16 +54,14 @@ pub fn read(source: &Arc<Source>, folder: &Path, problems: &mut Problems) -> Opt
     let written: Written = reader.file(&tree)?;
     check_campaign(&written.campaign.0, &mut reader);
     let vehicle = written.vehicle.and_then(|written| {
-        let path = folder.join(&written.value);
-        let read = read_text(&path, &path.display().to_string());
-        let (text, _) = reader.keep(read.map_err(|problem| problem.or_at(&written.span)))?;
+        let (text, _) = reader.keep(paths.read_text(&written))?;
         Some((written, yaml::load(&text, reader.problems)?))
     });
     let (runs, sections) = match written.runs {
         Some(_) => runs::read(&mut reader, &tree).unzip(),
-        None => (None, sections::read(&mut reader, &tree, folder)),
+        None => (None, sections::read(&mut reader, &tree, &paths)),
     };
-    let turning = convention::turning(&mut reader, &tree, folder);
+    let turning = convention::turning(&mut reader, &tree, &paths);
     let known = sections.clone().unwrap_or_else(|| Sections::none(source));
     let track = written.track.map(|mut track| {
         if !track.value.contains('{') {
@@ -91,7 +87,7 @@ pub fn read(source: &Arc<Source>, folder: &Path, problems: &mut Problems) -> Opt
     }
     let mapping = Mapping {
         source: Arc::clone(source),
-        folder: folder.to_path_buf(),
+        paths,
         name: written.name?,
         protocol: written.protocol,
         campaign: written.campaign.0,

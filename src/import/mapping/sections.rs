@@ -1,10 +1,9 @@
 //! The sections that are imported: a table, or a list of names.
 
-use std::path::Path;
 use std::sync::Arc;
 
+use super::Paths;
 use crate::data::table::Cell;
-use crate::data::text::read_text;
 use crate::data::{RecordKind, Table, check_file_name};
 use crate::problem::{Problem, Problems, error};
 use crate::source::{Source, Span, Spanned};
@@ -92,7 +91,7 @@ impl Sections {
 }
 
 /// The table of sections, or a list of their names.
-pub fn read(reader: &mut Reader<'_>, tree: &Node, folder: &Path) -> Option<Sections> {
+pub fn read(reader: &mut Reader<'_>, tree: &Node, paths: &Paths) -> Option<Sections> {
     let Some((key, node)) = tree.entry("sections") else {
         let says = "`sections` is missing: the table of sections, or their names";
         let problem = error("key-missing", says, &tree.span.part(0..0));
@@ -105,11 +104,8 @@ pub fn read(reader: &mut Reader<'_>, tree: &Node, folder: &Path) -> Option<Secti
         (None, names, node.span.clone())
     } else {
         let written: Spanned<String> = Spanned::from_node(reader, key, node)?;
-        let path = folder.join(&written.value);
-        let shown = path.display().to_string();
-        let placed = |problem: Problem| problem.or_at(&written.span);
-        reader.keep(read_text(&path, &shown).map_err(placed))?;
-        let table = Table::read(&path, &shown, Some(NAME), reader.problems)?;
+        let (text, sha256) = reader.keep(paths.read_text(&written))?;
+        let table = Table::parse(text, sha256, Some(NAME), reader.problems)?;
         let names = table.names().cloned().collect();
         let span = written.span.clone();
         (Some((written, Arc::new(table))), names, span)

@@ -129,7 +129,8 @@ pub fn matched(
         let problem = error("key-missing", says, &wanted.span);
         return Err(problem.help("write `track: track/{section}.csv`").into());
     };
-    let (path, shown) = mapping.place(&mapping.sections.fill(&pattern.value, recording.section));
+    let place = mapping.place_of(pattern, recording.section)?;
+    let shown = place.shown.as_str();
     let mut columns = vec![Wanted::new("distance", Dimension::LENGTH)];
     columns.extend(
         wanted
@@ -138,7 +139,7 @@ pub fn matched(
             .zip(channels)
             .map(|(map, (_, unit))| Wanted::new(map.name.value.as_str(), unit.dimension)),
     );
-    let track = read_record(&path, &shown, &columns)?;
+    let track = read_record(&place.path, shown, &columns)?;
     let at = &track.columns[0].values;
     let estimate = |channels: &[Vec<f64>], search: &Search| {
         let both = track.columns[1..].iter().zip(channels).enumerate();

@@ -101,17 +101,17 @@ fn wait(child: &mut Child, timeout: Duration, mark: &Mark) -> std::io::Result<Op
     let started = Instant::now();
     let mut pause = FIRST_LOOK;
     loop {
-        match child.try_wait() {
-            Ok(Some(status)) => return Ok(Some(status)),
-            Ok(None) => {}
+        match ended(child) {
+            Ok(true) => return end(child, mark).map(Some),
+            Ok(false) => {}
             Err(error) => {
-                end(child, mark);
+                let _ = end(child, mark);
                 return Err(error);
             }
         }
         let left = timeout.saturating_sub(started.elapsed());
         if left.is_zero() {
-            end(child, mark);
+            let _ = end(child, mark);
             return Ok(None);
         }
         std::thread::sleep(pause.min(left));
@@ -119,15 +119,40 @@ fn wait(child: &mut Child, timeout: Duration, mark: &Mark) -> std::io::Result<Op
     }
 }
 
-/// Terminates a child, its group and processes that left the group, and waits for the child.
-pub fn end(child: &mut Child, mark: &Mark) {
+/// Whether a child has ended. Its number stays taken, so that it can be that of no other process
+/// before [`end`].
+#[cfg(unix)]
+pub fn ended(child: &mut Child) -> std::io::Result<bool> {
+    use rustix::process::{WaitId, WaitIdOptions, waitid};
+    let Some(id) = number(child) else { return Ok(child.try_wait()?.is_some()) };
+    let how = WaitIdOptions::EXITED | WaitIdOptions::NOHANG | WaitIdOptions::NOWAIT;
+    match waitid(WaitId::Pid(id), how) {
+        Ok(status) => Ok(status.is_some()),
+        Err(rustix::io::Errno::INTR) => Ok(false),
+        Err(error) => Err(error.into()),
+    }
+}
+
+#[cfg(not(unix))]
+pub fn ended(child: &mut Child) -> std::io::Result<bool> {
+    Ok(child.try_wait()?.is_some())
+}
+
+#[cfg(unix)]
+fn number(child: &Child) -> Option<rustix::process::Pid> {
+    i32::try_from(child.id()).ok().and_then(rustix::process::Pid::from_raw)
+}
+
+/// Terminates a child that may have ended, its group and processes that left the group, and waits
+/// for the child.
+pub fn end(child: &mut Child, mark: &Mark) -> std::io::Result<ExitStatus> {
     #[cfg(unix)]
-    if let Some(group) = i32::try_from(child.id()).ok().and_then(rustix::process::Pid::from_raw) {
+    if let Some(group) = number(child) {
         let _ = rustix::process::kill_process_group(group, rustix::process::Signal::KILL);
     }
     let _ = child.kill();
-    started::end(mark);
-    let _ = child.wait();
+    started::end(mark, child.id());
+    child.wait()
 }
 
 pub fn last_lines(file: &mut File) -> String {

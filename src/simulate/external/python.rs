@@ -2,18 +2,19 @@
 //! their pipes.
 
 use std::collections::BTreeSet;
-use std::io::{BufRead, BufReader, Write};
+use std::io::{BufRead, BufReader, Read, Write};
 use std::path::PathBuf;
 use std::process::{Child, ChildStdin, Stdio};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::sync::{Mutex, OnceLock};
 use std::time::Duration;
 
 use serde_json::{Map, Value, json};
 
-use super::process::{Fault, Printed, end, last_lines, launched};
+use super::process::{Fault, Printed, end, ended, last_lines, launched};
 use super::read::{Program, Python};
 use super::started::Mark;
+use crate::data::text::LARGEST_RECORD;
 use crate::disk;
 
 /// The script that calls the function.
@@ -108,12 +109,14 @@ impl Workers {
             .stderr(errors.try_clone().map_err(Fault::NotStarted)?);
         let mut child = command.spawn().map_err(Fault::NotStarted)?;
         let input = child.stdin.take();
-        let (send, lines) = channel();
+        // One line waits until it is asked for: an answer that nobody asked for takes no memory.
+        let (send, lines) = sync_channel(1);
         if let Some(output) = child.stdout.take() {
             std::thread::spawn(move || {
                 let mut output = BufReader::new(output);
                 let mut line = String::new();
-                while matches!(output.read_line(&mut line), Ok(read) if read > 0)
+                // A longer line is cut off, and not understood.
+                while matches!((&mut output).take(LARGEST_RECORD).read_line(&mut line), Ok(read) if read > 0)
                     && send.send(std::mem::take(&mut line)).is_ok()
                 {}
             });
@@ -165,17 +168,18 @@ impl Worker {
 /// How long a process may take to end after its input was closed, in pauses of 5 ms.
 const PAUSES: usize = 100;
 
-/// A process that is not needed any more ends when its input is closed; one that does not is ended.
+/// A process that is not needed any more ends when its input is closed; one that does not is ended,
+/// with what it started.
 impl Drop for Worker {
     fn drop(&mut self) {
         drop(self.input.take());
         for _ in 0..PAUSES {
-            if !matches!(self.child.try_wait(), Ok(None)) {
-                return;
+            if !matches!(ended(&mut self.child), Ok(false)) {
+                break;
             }
             std::thread::sleep(Duration::from_millis(5));
         }
-        end(&mut self.child, &self.mark);
+        let _ = end(&mut self.child, &self.mark);
     }
 }
 

@@ -3,6 +3,7 @@
 //! `tests/cases/import/bad` holds mappings with a fault each, and the expected text beside them
 //! (`.out`); `UPDATE_EXPECT=1` rewrites it. Numbers are compared with closed forms.
 
+mod confined;
 mod early;
 mod example;
 mod memory;
@@ -17,7 +18,8 @@ use std::path::{Path, PathBuf};
 use fishplate::data::record::Format;
 use fishplate::data::write::Outputs;
 use fishplate::disk::SetKind;
-use fishplate::import::{import, mapping};
+use fishplate::import::import;
+use fishplate::import::mapping::{self, Paths};
 use fishplate::prepare::for_import;
 use fishplate::problem::Problems;
 use fishplate::run::needs::needs;
@@ -30,7 +32,8 @@ const CASES: &str = "tests/cases/import";
 /// Imports a mapping into a folder: its problems, and whether there is an error among them.
 pub fn imported(text: &str, name: &str, folder: &Path, out: &Path) -> (Problems, bool) {
     let mut problems = Problems::default();
-    let found = mapping::read(&Source::new(name, text), folder, &mut problems);
+    let paths = Paths::allowed(folder, true).expect("a folder");
+    let found = mapping::read(&Source::new(name, text), paths, &mut problems);
     let Some(mapping) = found else { return (problems, false) };
     let Some(compiled) = for_import(&mapping, &mut problems) else { return (problems, false) };
     let needs = compiled.map(|compiled| needs(&compiled.plan, &compiled.graph));
@@ -92,9 +95,10 @@ fn faults_are_told_with_their_places() {
 #[test]
 fn every_prefix_of_a_mapping_is_survived() {
     let text = fs::read_to_string(Path::new(CASES).join("good.yaml")).expect("readable");
+    let paths = Paths::inside(Path::new(CASES)).expect("a folder");
     for end in (0..text.len()).filter(|end| text.is_char_boundary(*end)) {
         let mut problems = Problems::default();
-        let found = mapping::read(&Source::new("m", &text[..end]), Path::new(CASES), &mut problems);
+        let found = mapping::read(&Source::new("m", &text[..end]), paths.clone(), &mut problems);
         assert_eq!(found.is_none(), problems.any_error(), "{end}");
         problems.render(false);
     }

@@ -105,6 +105,60 @@ fn a_list_cannot_remove_what_lies_elsewhere() {
     assert!(!folder.join("only-old").exists());
 }
 
+/// Links in the output folder, which anybody may have put there, lead to no other folder.
+#[cfg(unix)]
+#[test]
+fn links_in_the_folder_are_not_followed() {
+    let temp = tempfile::tempdir().expect("a temporary folder");
+    let (folder, elsewhere) = (temp.path().join("out"), temp.path().join("elsewhere"));
+    fs::create_dir_all(elsewhere.join("empty")).expect("made");
+    fs::create_dir(&folder).expect("made");
+    fs::write(elsewhere.join("x"), "1").expect("written");
+    let link = |to: &Path, name: &str| {
+        std::os::unix::fs::symlink(to, folder.join(name)).expect("linked");
+    };
+    let untouched = || {
+        let names = fs::read_dir(&elsewhere).expect("there").count();
+        let x = fs::read_to_string(elsewhere.join("x")).expect("there");
+        assert_eq!((names, x.as_str()), (2, "1"));
+        assert!(elsewhere.join("empty").is_dir());
+    };
+    // A folder of the set.
+    link(&elsewhere, "tables");
+    let refused = commit(&folder, &[("tables/a.csv", "new")]).expect_err("a link");
+    assert!(refused.to_string().contains("symbolic link"), "{refused}");
+    untouched();
+    // A file of the set, and its signature: the links go, what they name stays.
+    fs::remove_file(folder.join("tables")).expect("removed");
+    link(&elsewhere.join("x"), "report.pdf");
+    link(&elsewhere.join("x"), "report.pdf.minisig");
+    commit(&folder, &[("report.pdf", "new")]).expect("committed");
+    assert_eq!(fs::read(folder.join("report.pdf")).expect("there"), b"new");
+    assert!(fs::symlink_metadata(folder.join("report.pdf.minisig")).is_err());
+    untouched();
+    // Folders that the list names.
+    link(&elsewhere, "link");
+    fs::write(folder.join(".fishplate-report.sha256"), "x  link/empty/y\n").expect("written");
+    commit(&folder, &NEW).expect("committed");
+    untouched();
+    // Journals of a run that was not interrupted.
+    let unfinished = folder.join(".fishplate-unfinished");
+    for journal in ["put link/new\n", "remove link/x\nput link/x\n"] {
+        fs::create_dir(&unfinished).expect("made");
+        let text = format!("fishplate set 1\n{journal}end\n");
+        fs::write(unfinished.join("journal"), text).expect("written");
+        fs::write(unfinished.join("0"), "forged").expect("written");
+        let refused = commit(&folder, &NEW).expect_err("a link");
+        assert!(refused.to_string().contains("symbolic link"), "{refused}");
+        untouched();
+        fs::remove_dir_all(&unfinished).expect("removed");
+    }
+    fs::write(elsewhere.join("journal"), "fishplate set 1\nput a\nend\n").expect("written");
+    link(&elsewhere, ".fishplate-unfinished");
+    let refused = commit(&folder, &NEW).expect_err("a link");
+    assert!(refused.to_string().contains("symbolic link"), "{refused}");
+}
+
 #[cfg(unix)]
 #[test]
 fn two_runs_do_not_write_to_one_folder() {

@@ -213,6 +213,27 @@ fn keys_are_protected_and_never_overwritten() {
 
 /// A signature that minisign made: the example of its public documentation (key, prehashed
 /// signature of the four bytes `test`).
+/// A link in the place of a signature is neither written through nor read through.
+#[cfg(unix)]
+#[test]
+fn a_signature_that_is_a_link_is_not_followed() {
+    let folder = copy(&written().out());
+    let name = keys(folder.path());
+    let (secret, public) = (format!("{name}.key"), format!("{name}.pub"));
+    let report = text(&folder.path().join("report.pdf"));
+    let (link, other) = (folder.path().join("report.pdf.minisig"), folder.path().join("other"));
+    fs::write(&other, "precious").expect("written");
+    std::os::unix::fs::symlink(&other, &link).expect("linked");
+    let ran = fishplate(&["sign", &report, "--key", &secret]);
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    assert_eq!(fs::read_to_string(&other).expect("there"), "precious");
+    assert!(!link.is_symlink());
+    fs::rename(&link, &other).expect("moved");
+    std::os::unix::fs::symlink(&other, &link).expect("linked");
+    let ran = fishplate(&["verify", &report, "--public-key", &public]);
+    assert!(ran.code == 1 && check(&ran, "signature").contains("symbolic link"), "{}", ran.stdout);
+}
+
 #[test]
 fn the_published_example_of_minisign_verifies() {
     let folder = tempfile::tempdir().expect("a folder");

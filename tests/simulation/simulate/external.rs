@@ -290,6 +290,35 @@ mod programs {
         assert!(!child.is_empty() && (0..100).any(gone), "the child {child} goes on");
     }
 
+    /// Also if the program itself ends well: what it leaves in sessions of their own, also without
+    /// the variable if their parent is running, ends with it.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn what_a_program_leaves_behind_ends_with_it() {
+        if !std::env::split_paths(&std::env::var_os("PATH").unwrap_or_default())
+            .any(|folder| folder.join("setsid").is_file())
+        {
+            crate::common::tools::skip("setsid");
+            return;
+        }
+        let script = r#"setsid sh -c "echo \$\$ >> left; env -i sh -c \"echo \\\$\\\$ >> left; sleep 301\"; sleep 300" & while [ $(wc -l < left) -lt 2 ]; do sleep 0.02; done; cp small/simulation/$1.csv $2"#;
+        let command = format!("[sh, -c, '{script}', sh, '{{section}}', '{{out}}']");
+        let place = place(&command, "timeout: 20 s\n");
+        place.write("left", "");
+        place.simulated("out", &arguments(&["--jobs", "1"]));
+        let left = place.text("left");
+        assert!(left.lines().count() >= 2, "{left}");
+        for child in left.lines() {
+            let gone = |_| {
+                let state = fs::read_to_string(format!("/proc/{child}/stat"));
+                let gone = state.map_or(true, |state| state.contains(") Z "));
+                std::thread::sleep(std::time::Duration::from_millis(if gone { 0 } else { 50 }));
+                gone
+            };
+            assert!((0..100).any(gone), "the child {child} goes on");
+        }
+    }
+
     /// An entry of the cache that was changed is told, and its record made anew.
     #[test]
     fn a_damaged_cache() {
