@@ -366,10 +366,10 @@ plausibility guiding_balance "Sum of the guiding forces against the unbalanced a
 
 plausibility guiding_gain "Sum of the guiding forces over the unbalanced acceleration, over all sections"
   of       TotalY
-  over     sections
   require  median near -(8 * Q0 / 9.80665 m/s^2) * unbalanced_acceleration within 100 kN
-  unless   direction is straight
+  over     sections
   slope    0.9 to 1.1
+  unless   direction is straight
   cause    "a gain of the guiding forces; Q0, or the speeds, radii or cants of the table of sections"
   note     "The sum balances the unbalanced acceleration of the mass, whatever the suspension. In 41 sound"
            "campaigns the slope is from 0.92 to 1.06. Wind and offsets move all sections alike, not the"
@@ -377,34 +377,34 @@ plausibility guiding_gain "Sum of the guiding forces over the unbalanced acceler
 
 plausibility total_load "Vertical forces of all wheels against the static load, over all sections"
   of       TotalQ
-  over     sections
   require  median near 8 * Q0 within 11 %
+  over     sections
   cause    "Q0 of the vehicle file, a gain of the vertical forces, or the load of another state"
   note     "A payload that nobody modelled adds up to 9 %. In sound campaigns without payload the sum is"
            "within 2.5 %."
 
 plausibility lateral_gain "Lateral acceleration over the unbalanced acceleration, over all sections"
   of       ay at each running_gear
-  over     sections
   require  median near unbalanced_acceleration within 1 m/s^2
-  unless   direction is straight
+  over     sections
   slope    0.95 to 1.45
+  unless   direction is straight
   cause    "a gain of the acceleration; the speeds, radii or cants of the table of sections"
   note     "The roll of the body adds a tenth to a third of the unbalanced acceleration. In 41 sound"
            "campaigns of three vehicles the slope is from 1.07 to 1.23."
 
 plausibility lateral_agreement "Gain of the lateral acceleration between simulation and measurement"
   of       ay at each running_gear
-  over     sections
   require  measured(median) near simulated(median) within 1 m/s^2
+  over     sections
   slope    0.85 to 1.15
   cause    "a gain of the acceleration of one side; the speeds, radii or cants of the table of sections"
   note     "Soft springs and worn bump stops change it by up to 7 %, in 41 campaigns."
 
 plausibility vertical_agreement "Gain of a vertical wheel force between simulation and measurement"
   of       Q
-  over     sections
   require  measured(median) near simulated(median) within 500 kN
+  over     sections
   slope    0.65 to 1.4
   cause    "the cants of the table of sections; a gain of the channel on one side"
   note     "Over right-hand and left-hand curves. Worn wheels and soft springs change it to 0.76 and 1.32."
@@ -413,8 +413,8 @@ plausibility vertical_agreement "Gain of a vertical wheel force between simulati
 plausibility vertical_siblings "Vertical forces of the two wheels on one side of a bogie"
   of       SiblingsI at each side
   of       SiblingsII at each side
-  over     sections
   require  measured(median) near simulated(median) within 0.085 * Q0
+  over     sections
   cause    "a gain or an offset of one of the two channels on one side"
   note     "Payload, wind, cant and springs act on both wheels alike. In 38 sound campaigns both sides differ"
            "by at most 6.5 % of Q0."
@@ -609,8 +609,8 @@ plausibility shared_noise "Noise that simulation and measurement share"
   of         Q
   of         ay
   of         az
-  over       sections
   require    shared_content(60 Hz, 100 Hz) <= 0.04
+  over       sections
   otherwise  not assessable
   cause      "one of the two records was made from the other: with noise, delayed, scaled or blended"
   note       "Above 60 Hz a measurement is noise, of which a simulation knows nothing. In 41 sound campaigns"
@@ -631,8 +631,8 @@ plausibility independent "Differences as large as those of a model"
   of         Q
   of         ay
   of         az
-  over       sections
   require    unexplained_content(1 Hz, 10 Hz) >= 0.2
+  over       sections
   otherwise  not assessable
   cause      "one of the two records was made from the other: filtered, with noise, scaled or fitted"
   note       "In 41 sound campaigns it is at least 0.38 in every channel, with 4.3 in the middle: the errors"

@@ -4,7 +4,7 @@
 use super::Overrides;
 use super::declared::NOT_STATED;
 use super::prelude::*;
-use crate::result::{Confirmation, ConfirmedValue, Remark, StatedValue, StatedValues, Unmatched};
+use crate::result::{Confirmation, ConfirmedValue, Remark, StatedValue, Unmatched};
 
 /// The values of a protocol that are to be confirmed, against the confirmations of a campaign.
 pub fn values(blocks: &[Block], overrides: &Overrides) -> StatedValues {

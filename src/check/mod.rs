@@ -59,7 +59,7 @@ use std::collections::BTreeSet;
 use indexmap::IndexMap;
 
 use crate::problem::{Problem, Problems, error, problem};
-use crate::result::{Confirmation, StatedValues};
+use crate::result::Confirmation;
 use crate::source::{Span, Spanned};
 use crate::syntax::document::{Block, Document, Field, Text};
 use crate::syntax::from_pest;
@@ -67,7 +67,7 @@ use crate::units::Dimension;
 use finish::{in_reading_order, name_after_number, rule_count, set_outside, written_rules};
 use groups::Grouped;
 use names::Names;
-use plan::{Axis, Expr, NamedFilter, Parameter, Plan, SetBy, Step};
+use plan::{Axis, Expr, NamedFilter, Parameter, Plan, SetBy, StatedValues, Step};
 use scope::Scope;
 
 /// A parameter set from outside the protocol.

@@ -151,9 +151,13 @@ impl Folder {
         if !self.on_disk() {
             return Ok(CampaignPath { path, shown: inside.clone(), inside });
         }
-        let real = disk::real(&path).map_err(|why| unreadable(written)(why).at(at))?;
-        if real.is_some_and(|real| !real.starts_with(&self.real)) {
-            return Err(outside("is a symbolic link out of the campaign's folder"));
+        // Of a file that does not exist, the nearest folder that does.
+        for above in path.ancestors() {
+            match disk::real(above).map_err(|why| unreadable(written)(why).at(at))? {
+                Some(real) if real.starts_with(&self.real) => break,
+                Some(_) => return Err(outside("is a symbolic link out of the campaign's folder")),
+                None => {}
+            }
         }
         let shown = if self.shown.as_os_str().is_empty() {
             inside.clone()

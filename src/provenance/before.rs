@@ -84,13 +84,35 @@ pub fn upgrade(results: &mut Value) {
 }
 
 /// What results of this format did not state at first: the path and the key.
-const LATER: [(&str, &str); 2] = [("protocol", "origin"), ("campaign", "outside_table")];
+const LATER: [(&str, &str); 4] = [
+    ("", "provisional"),
+    ("", "deviations"),
+    ("protocol", "origin"),
+    ("campaign", "outside_table"),
+];
 
 /// Removes from results what those before do not state, of what may be missing.
 pub fn without_later(now: &mut Value, before: &Value) {
     for (path, key) in LATER {
-        if before.pointer(&format!("/{path}/{key}")).is_none() {
+        let within = if path.is_empty() { Some(before) } else { before.get(path) };
+        if within.and_then(|within| within.get(key)).is_none() {
             each(now, path, &mut |entry| drop(entry.shift_remove(key)));
+        }
+    }
+}
+
+/// Removes the notes on values that are to be confirmed from results that do not list these values.
+pub fn without_replaced(results: &mut Value) {
+    if results.get("provisional").is_some() {
+        return;
+    }
+    let is_replaced = |note: &Value| match note.as_str() {
+        Some(text) => text.starts_with("To be confirmed"),
+        None => note["code"] == "to-be-confirmed",
+    };
+    for key in ["notes", "notes_data"] {
+        if let Some(Value::Array(notes)) = results.get_mut(key) {
+            notes.retain(|note| !is_replaced(note));
         }
     }
 }

@@ -181,6 +181,7 @@ fn read(bytes: &[u8], shown: &str) -> Result<(String, Value, Certification), Pro
     if value.get("fishplate").is_none() {
         return Err(unreadable("missing field `fishplate`".into()));
     }
+    before::without_replaced(&mut value);
     let read = if before::states_no_format(&value) {
         let mut current = value.clone();
         before::upgrade(&mut current);

@@ -3,17 +3,6 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Remark;
-
-/// All values that are to be confirmed: those that are not yet, those that are, and confirmations
-/// that do not count.
-#[derive(Clone, Debug, Default)]
-pub struct StatedValues {
-    pub provisional: Vec<StatedValue>,
-    pub confirmed: Vec<ConfirmedValue>,
-    pub not_counted: Vec<Remark>,
-}
-
 /// A value that is not from a checked source, or that was set in place of a default.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct StatedValue {
@@ -71,18 +60,6 @@ pub enum Unmatched {
         value: String,
     },
     NothingToConfirm,
-}
-
-impl StatedValues {
-    /// Whether a value of this name is not confirmed.
-    pub fn open(&self, name: &str) -> bool {
-        self.provisional.iter().any(|stated| stated.name == name)
-    }
-
-    /// Why a value is to be confirmed that is not.
-    pub fn why(&self, name: &str) -> Option<String> {
-        self.provisional.iter().find(|stated| stated.name == name)?.why.clone()
-    }
 }
 
 impl StatedValue {

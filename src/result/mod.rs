@@ -31,7 +31,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::words;
 
-pub use confirmation::{Confirmation, ConfirmedValue, StatedValue, StatedValues, Unmatched};
+pub use confirmation::{Confirmation, ConfirmedValue, StatedValue, Unmatched};
 pub use direction::Direction;
 pub use domain::{CoordinateRange, DomainResult, DomainSection, WantedPoint};
 pub use finding::{Consequence, Finding, Occurrence};

@@ -37,12 +37,6 @@ pub enum Remark {
     Provisional {
         values: usize,
     },
-    /// As earlier versions told values that are to be confirmed.
-    ToBeConfirmed {
-        standard: bool,
-        values: Vec<Datum>,
-        why: String,
-    },
     /// A confirmation of a value in `campaign.yaml` that does not count.
     ConfirmationNotCounted {
         name: String,

@@ -254,7 +254,7 @@ fn one_faulty_section_is_not_used() {
                 cell(&campaign.join("sections.csv"), 1, "direction", "right");
                 cell(&campaign.join("sections.csv"), 1, "radius [m]", "300");
             },
-            "does not meet the condition of zone 1: not met: direction is straight or (radius > 600 m and |cant_deficiency| <= 40 mm); found: direction right, curve radius 300 m",
+            "does not meet the condition of zone 1: not met: direction is straight or (radius > 600 m and |cant_deficiency| <= 40 mm), to be confirmed against the standard; found: direction right, curve radius 300 m",
         ),
         (
             "no radius",

@@ -126,7 +126,7 @@ pub fn write_tiny(folder: &Path) {
     );
     write(
         "vehicle.yaml",
-        "name: Wagon\ncategory: passenger\nrunning_gear: bogies\nsecondary_suspension: true\nstatic_wheel_load: 50\n",
+        "name: Wagon\ncategory: passenger\nrunning_gear: bogies\nsecondary_suspension: true\nstatic_wheel_load: 50\nadmissible_speed: 120 km/h\n",
     );
     let mut sections = String::from(
         "section,zone [-],start [m],end [m],radius [m],direction,cant [mm],cant deficiency [mm],speed [km/h]\n",

@@ -232,7 +232,7 @@ fn cells_without_a_verdict_and_bytes() {
     };
     assert_eq!(
         (of(0).0, of(1).0, of(2).0, of(3).0),
-        ("validated", "not assessable", "not assessable", "validated")
+        ("validated", "not assessable", "not assessable", "not assessable")
     );
     assert!(of(2).1.contains("no table of sections"), "{}", of(2).1);
     // The two have nothing in common: no rule of one makes sense in the other.

@@ -6,6 +6,7 @@ mod filter;
 mod find;
 mod quantity;
 mod section;
+mod stated;
 mod verdict;
 
 use serde::{Deserialize, Serialize};
@@ -20,6 +21,7 @@ pub use filter::*;
 pub use find::*;
 pub use quantity::*;
 pub use section::*;
+pub use stated::*;
 pub use verdict::*;
 
 /// A checked protocol.
@@ -37,7 +39,7 @@ pub struct Plan {
     pub time: Option<Axis>,
     pub parameters: Vec<Parameter>,
     /// Values that are to be confirmed.
-    pub values: result::StatedValues,
+    pub values: StatedValues,
     pub vehicle: Vec<Datum>,
     pub columns: Vec<Datum>,
     /// Names of campaigns that conditions ask for, where they stand.

@@ -16,7 +16,7 @@ use crate::run::describe::traces::{self, Kept, Signals};
 use crate::run::describe::{domain, not_asked, told};
 use crate::run::estimate::extrapolation;
 use crate::run::reduce::{Numbered, Prepared, Progress, Shard};
-use crate::run::sections::{Basis, requirements, units};
+use crate::run::sections::{Basis, units};
 use crate::run::values::{SectionValues, Shifts};
 use crate::run::verdict::{Evaluated, Judged, all_values};
 

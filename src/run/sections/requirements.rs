@@ -8,10 +8,7 @@ use crate::check::evaluate::{flag, number};
 use crate::check::plan::{Expr, Kind, Plan, SectionRules, Zone};
 use crate::check::possible::{Possible, possible};
 use crate::check::values::{Values, Watched};
-use crate::result::{
-    CheckResult, DataItem, Datum, Finding, FindingData, Occurrence, Reason, SELECTION, Sections,
-    Subject,
-};
+use crate::result::{CheckResult, DataItem, Datum, Reason, SELECTION, Sections, Subject};
 
 /// Relative tolerance for a minimum length, for the rounding of section ends written with two
 /// decimals.

@@ -145,7 +145,7 @@ fn qpdf_shows_the_parts_of_the_standards() {
             _ => {}
         }
     }
-    assert!(seen["/Font"] > 0 && seen["/FontDescriptor"] > 0 && seen["/Filespec"] == 4, "{seen:?}");
+    assert!(seen["/Font"] > 0 && seen["/FontDescriptor"] > 0 && seen["/Filespec"] == 5, "{seen:?}");
     // 6.8: each embedded file has a name in both forms, a kind, a relationship, and is listed as
     // associated.
     let associated = objects.get(&root["/AF"]).as_array().expect("associated files");

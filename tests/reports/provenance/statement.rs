@@ -119,8 +119,8 @@ fn it_names_every_file_with_its_hash() {
         }
     }
     assert!(
-        read > 30 && dependencies.len() == read + 3,
-        "{read} files of the campaign, three of the protocol"
+        read > 30 && dependencies.len() == read + 4,
+        "{read} files of the campaign, four of the protocol"
     );
     let external = &found["predicate"]["buildDefinition"]["externalParameters"];
     assert_eq!(
