@@ -121,10 +121,10 @@ fn summary(found: &Certification, console: &Console) -> Lines {
     for finding in &found.findings {
         out += &format!("finding: {}\n", findings::line(finding));
     }
-    for note in found.notes.iter().filter(|note| !rules::is_of_rules(note)) {
+    for note in &found.notes {
         out += &format!("note: {}\n", note.text());
     }
-    for deviation in &found.deviations {
+    for deviation in found.deviations.iter().filter(|one| !rules::is_of_rules(&one.what)) {
         out += &format!("deviation: {}\n", deviation.what.text());
     }
     for value in &found.provisional {

@@ -91,8 +91,14 @@ const LATER: [(&str, &str); 4] = [
     ("campaign", "outside_table"),
 ];
 
-/// Removes from results what those before do not state, of what may be missing.
+/// Removes from results what those before do not state, of what may be missing, and adds the notes
+/// that it replaces.
 pub fn without_later(now: &mut Value, before: &Value) {
+    for (key, at, note) in replaced(before) {
+        if let Some(Value::Array(notes)) = now.get_mut(key) {
+            notes.insert(at.min(notes.len()), note);
+        }
+    }
     for (path, key) in LATER {
         let within = if path.is_empty() { Some(before) } else { before.get(path) };
         if within.and_then(|within| within.get(key)).is_none() {
@@ -103,18 +109,27 @@ pub fn without_later(now: &mut Value, before: &Value) {
 
 /// Removes the notes on values that are to be confirmed from results that do not list these values.
 pub fn without_replaced(results: &mut Value) {
-    if results.get("provisional").is_some() {
-        return;
+    for (key, at, _) in replaced(results).into_iter().rev() {
+        results[key].as_array_mut().map(|notes| notes.remove(at));
     }
+}
+
+/// These notes: the list, the place in it, and the note.
+fn replaced(results: &Value) -> Vec<(&'static str, usize, Value)> {
     let is_replaced = |note: &Value| match note.as_str() {
         Some(text) => text.starts_with("To be confirmed"),
         None => note["code"] == "to-be-confirmed",
     };
-    for key in ["notes", "notes_data"] {
-        if let Some(Value::Array(notes)) = results.get_mut(key) {
-            notes.retain(|note| !is_replaced(note));
-        }
-    }
+    let lists =
+        ["notes", "notes_data"].into_iter().filter(|_| results.get("provisional").is_none());
+    let notes = lists.flat_map(|key| {
+        let notes = results.get(key).and_then(Value::as_array).into_iter().flatten().enumerate();
+        notes.map(move |(at, note)| (key, at, note))
+    });
+    notes
+        .filter(|(.., note)| is_replaced(note))
+        .map(|(key, at, note)| (key, at, note.clone()))
+        .collect()
 }
 
 /// Removes from results in the present form what those before did not state.

@@ -181,16 +181,14 @@ fn read(bytes: &[u8], shown: &str) -> Result<(String, Value, Certification), Pro
     if value.get("fishplate").is_none() {
         return Err(unreadable("missing field `fishplate`".into()));
     }
-    before::without_replaced(&mut value);
-    let read = if before::states_no_format(&value) {
-        let mut current = value.clone();
+    let mut current = value.clone();
+    before::without_replaced(&mut current);
+    if before::states_no_format(&value) {
         before::upgrade(&mut current);
         before::sort_findings(&mut value);
-        Certification::deserialize(current)
-    } else {
-        Certification::deserialize(&value)
-    };
-    let results = read.map_err(|error| unreadable(error.to_string()))?;
+    }
+    let results =
+        Certification::deserialize(current).map_err(|error| unreadable(error.to_string()))?;
     Ok((text.to_string(), value, results))
 }
 

@@ -7,7 +7,8 @@ use crate::words::Text;
 pub fn beside_verdict(found: &Certification) -> Vec<Text> {
     let own = |origin: &&ProtocolOrigin| matches!(origin, ProtocolOrigin::OwnProtocol { .. });
     let own = found.protocol.origin.iter().filter(own).map(ProtocolOrigin::text);
-    own.chain(found.notes.iter().filter(|note| is_of_rules(note)).map(Remark::text)).collect()
+    let set = found.deviations.iter().map(|deviation| &deviation.what);
+    own.chain(set.filter(|what| is_of_rules(what)).map(Remark::text)).collect()
 }
 
 /// Whether a remark is of the rules, and so stands beside the verdict.

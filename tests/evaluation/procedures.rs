@@ -241,7 +241,7 @@ fn the_virtual_test_beside_the_measured_one() {
     let found = example("coach-good", SIDE_BY_SIDE, THREE);
     assert_eq!(
         (found.verdict, found.verdict_in_words().as_str()),
-        (Verdict::NotValidated, "other acceptance")
+        (Verdict::NotValidated, "other acceptance, provisional: 42 values not confirmed")
     );
     let differ = ["virtual_test", "virtual_ride", "same_acceptance", "ride_agrees"];
     for (name, outcome) in verdicts(&found) {

@@ -144,6 +144,7 @@ fn protocol(from: &str, to: &str) -> (TempDir, String) {
     let text = &fishplate::library::shipped("sprague-geers").expect("shipped").text;
     assert!(text.contains(from), "{from}");
     let path = temp.path().join("p.fp");
+    let text = text.replacen("protocol sprague-geers", "protocol own", 1);
     fs::write(&path, text.replacen(from, to, 1)).expect("written");
     let path = path.display().to_string();
     (temp, path)

@@ -89,6 +89,8 @@ pub struct Users {
     pub quantities: Vec<String>,
     /// Other rules: `zone 1`, `check full_curve`.
     pub rules: Vec<String>,
+    /// Whether sections are not assessable without it, though it may be absent.
+    pub of_requirement: bool,
 }
 
 impl Users {
@@ -253,7 +255,7 @@ fn datum_need(datum: &Datum, users: Users) -> DatumNeed {
         unit: unit.map(|unit| unit.text.clone()),
         words,
         range,
-        required: default.is_none(),
+        required: default.is_none() || (datum.may_be_absent && users.of_requirement),
         default,
         users,
     }
@@ -394,11 +396,20 @@ fn data_users(plan: &Plan) -> [Vec<Users>; 2] {
     let mut columns = vec![Users::default(); plan.columns.len()];
     let mut vehicle = vec![Users::default(); plan.vehicle.len()];
     for (name, is_quantity, reads) in rules(plan) {
-        reads.columns.iter().for_each(|&index| columns[index].add(&name, is_quantity));
+        let of_requirement = plan.zones.iter().any(|zone| name == format!("zone {}", zone.name))
+            || plan
+                .checks
+                .iter()
+                .any(|rule| rule.required && name == format!("check {}", rule.name));
+        let mut add = |users: &mut Users| {
+            users.add(&name, is_quantity);
+            users.of_requirement |= of_requirement;
+        };
+        reads.columns.iter().for_each(|&index| add(&mut columns[index]));
         for expr in reads.exprs {
             expr.visit(&mut |part| match part.kind {
-                Kind::Column(index) => columns[index].add(&name, is_quantity),
-                Kind::Vehicle(index) => vehicle[index].add(&name, is_quantity),
+                Kind::Column(index) => add(&mut columns[index]),
+                Kind::Vehicle(index) => add(&mut vehicle[index]),
                 _ => {}
             });
         }

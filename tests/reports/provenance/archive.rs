@@ -149,7 +149,7 @@ fn qpdf_shows_the_parts_of_the_standards() {
     // 6.8: each embedded file has a name in both forms, a kind, a relationship, and is listed as
     // associated.
     let associated = objects.get(&root["/AF"]).as_array().expect("associated files");
-    assert_eq!(associated.len(), 4, "results.json and three files of the protocol");
+    assert_eq!(associated.len(), 5, "results.json and four files of the protocol");
     for file in associated {
         let file = objects.get(file);
         assert!(
