@@ -9,6 +9,13 @@ protocol plausibility-signals "Plausibility of the channels that quantities read
   time    time in s
   note    "The axis is that of the protocol which uses this text; the one here serves its own check."
 
+plausibility copies "Copies of records"
+  of         every channel
+  distinct   channels, sections, sides
+  concerns   record
+  otherwise  not used
+  cause      "a record or channel written twice"
+
 plausibility live "Constant channel"
   of         every channel
   require    held <= 5 % or resolution > 0.3 * std
@@ -32,10 +39,12 @@ plausibility coarse "Channel with coarse resolution"
   note       "Steps of 30 % of the standard deviation increase it by 0.4 % and distort percentiles. Forces"
              "with one decimal and accelerations with two have steps of up to 15 % on good track."
 
-plausibility exchanged "Exchanged channels"
+plausibility exchanged "Records and channels that belong together"
   of         every channel
-  exchanged  from 0.5, by 0.3
-  cause      "two channels exchanged in one of the records"
+  exchanged  from 0.6, by 0.3
+  concerns   record
+  otherwise  not used
+  cause      "exchanged channels, wheelsets, sides or sections in one of the records, or a vehicle that is turned"
   note       "Forces of neighbouring wheels are alike: in sound sections a channel agrees with another one"
              "better than with its own by at most 0.04."
 
@@ -57,12 +66,6 @@ plausibility drift "Drift of the measurement"
   of       every channel
   require  |drift| <= 1.5 * measured(std)
   cause    "drift of a measuring channel"
-
-plausibility copies "Copies of records"
-  of         every channel
-  distinct   channels, sections, sides
-  otherwise  not used
-  cause      "a record or channel written twice"
 
 sections
   removed  at most 20 %

@@ -2,8 +2,7 @@
 
 use crate::metrics::cluster::{mean_interval, standard_deviation_interval};
 use crate::metrics::percentile::{Method, percentile};
-use crate::metrics::sampling;
-use crate::metrics::spectrum::strongest_line;
+use crate::metrics::sampling::{self, Traits};
 use crate::metrics::statistics::{self, Divisor};
 use crate::units::Dimension;
 
@@ -24,7 +23,7 @@ pub struct ReducerEntry {
     /// Dimension of the result, from those of the signal and of the axis.
     pub gives: fn(Dimension, Dimension) -> Dimension,
     /// From the axis and the samples, both in SI; `None` where it is not defined.
-    pub run: fn(&[f64], &[f64]) -> Option<f64>,
+    pub run: fn(&[f64], &Traits<'_>) -> Option<f64>,
 }
 
 impl PartialEq for ReducerEntry {
@@ -36,7 +35,7 @@ impl PartialEq for ReducerEntry {
 const fn same(
     name: &'static str,
     about: &'static str,
-    run: fn(&[f64], &[f64]) -> Option<f64>,
+    run: fn(&[f64], &Traits<'_>) -> Option<f64>,
 ) -> ReducerEntry {
     ReducerEntry { name, about, gives: |signal, _| signal, run }
 }
@@ -107,14 +106,14 @@ pub const REDUCERS: &[ReducerEntry] = &[
     share!(
         "line",
         "Largest peak of the spectrum that is a single line, over the median of the lines around it.",
-        |x| Some(strongest_line(x)?.0)
+        |x: &Traits<'_>| Some(x.line()?.0)
     ),
     ReducerEntry {
         name: "line_length",
         about: "Wavelength of that line, in the unit of the axis.",
         gives: |_, axis| axis,
         run: |axis, x| {
-            let (_, frequency) = strongest_line(x)?;
+            let (_, frequency) = x.line()?;
             let step = (axis.last()? - axis.first()?) / (axis.len() - 1) as f64;
             Some(step / frequency).filter(|length| length.is_finite())
         },
@@ -142,7 +141,7 @@ impl Reducer {
     }
 
     /// `None` where the value is not defined, such as for no samples or the slope of one sample.
-    pub fn run(self, axis: &[f64], samples: &[f64], method: Method) -> Option<f64> {
+    pub fn run(self, axis: &[f64], samples: &Traits<'_>, method: Method) -> Option<f64> {
         match self {
             Self::Percentile(percent) => percentile(samples, percent, method).ok(),
             Self::Named(entry) => (entry.run)(axis, samples),

@@ -1,6 +1,8 @@
 //! Metrics: one number from the simulated and the measured signal of a section. The measured signal
 //! is the reference.
 
+use std::cell::OnceCell;
+
 use super::forms::FormPart::{self, Frequency, Signal, Word};
 use super::forms::{Form, NumberOption};
 use crate::metrics::{coherence, hysteresis, pair};
@@ -20,6 +22,8 @@ pub struct Pair<'a> {
     /// The simulated and the measured signal used in place of the axis, where the wording names
     /// one.
     pub over: Option<(&'a [f64], &'a [f64])>,
+    /// The shift at which both agree best, once a metric has looked for it.
+    pub best_shift: &'a OnceCell<isize>,
 }
 
 /// The best value of a metric. A limit must admit it.
@@ -462,7 +466,7 @@ pub const METRICS: &[MetricEntry] = &[
         Best::Greatest(1.0),
         "Share of the content of the band that both signals have in common at their best shift, less what unrelated signals have by chance: about 0 for two noises, 1 where one signal is made from the other.",
         "Carter, Knapp & Nuttall 1973",
-        |p| said(coherence::shared(p.simulated, p.measured, p.rate, in_band(p)?)),
+        |p| said(coherence::shared((p.simulated, p.measured, p.best_shift), p.rate, in_band(p)?)),
     ),
     entry(
         &[
@@ -476,7 +480,13 @@ pub const METRICS: &[MetricEntry] = &[
         Best::Least(0.0),
         "What the other signal does not explain of the band: its share of the content times the ratio of its spectral density to that in the upper 40 % of the spectrum, the smaller one of both signals. Below 0.1 where one signal is the other one with noise.",
         "definition",
-        |p| said(coherence::unexplained(p.simulated, p.measured, p.rate, in_band(p)?)),
+        |p| {
+            said(coherence::unexplained(
+                (p.simulated, p.measured, p.best_shift),
+                p.rate,
+                in_band(p)?,
+            ))
+        },
     ),
     of_loops(
         &[Word("hysteresis"), Word("maximum"), Word("over"), Signal("axis")],

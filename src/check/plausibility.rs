@@ -120,6 +120,7 @@ impl Checker<'_> {
         let unless = if_written(block.field("unless").map(|field| self.section_condition(field)))?;
         let treatments = ["note", "not used", "not assessable", "stop"];
         let otherwise = self.on_fault(block, "otherwise", &treatments);
+        let concerns_record = self.concerns_record(block)?;
         let chain = chain.filter(|_| whole)?;
         let mut rules = Vec::new();
         for (signals, unit) in all {
@@ -151,11 +152,26 @@ impl Checker<'_> {
                 test,
                 unless: unless.clone(),
                 otherwise,
+                concerns_record,
                 cause: block.text("cause"),
                 span: block.place(),
             });
         }
         Some(rules)
+    }
+
+    /// `concerns record`; without the field, a channel.
+    fn concerns_record(&mut self, block: &Block) -> Option<bool> {
+        let Some(field) = block.field("concerns") else { return Some(false) };
+        let word = normalised(&field.value.text);
+        let known = ["channel", "record"];
+        if !known.contains(&word.as_str()) {
+            return self.refuse(
+                problem!("unknown-choice", field, "`concerns` cannot be `{word}`")
+                    .suggest(&word, known),
+            );
+        }
+        Some(word == "record")
     }
 
     /// `over sections`, with `slope 0.9 to 1.1`.
@@ -308,20 +324,24 @@ impl Checker<'_> {
         Some(distinct)
     }
 
-    /// `from 0.5, by 0.3`.
+    /// `from 0.5, by 0.3, alike from 0.7`; the last part may be left out.
     fn exchanged(&mut self, field: &Field) -> Option<Exchanged> {
         let text = normalised(&field.value.text);
         let number = |text: &str| {
             text.trim().parse::<f64>().ok().filter(|number| *number > 0.0 && *number < 1.0)
         };
         let parts = text.strip_prefix("from ").and_then(|rest| rest.split_once(", by "));
-        let found = parts.and_then(|(least, more)| {
-            Some(Exchanged { least: number(least)?, more: number(more)? })
+        let found = parts.and_then(|(least, rest)| {
+            let (more, alike) = match rest.split_once(", alike from ") {
+                Some((more, alike)) => (more, Some(number(alike)?)),
+                None => (rest, None),
+            };
+            Some(Exchanged { least: number(least)?, more: number(more)?, alike })
         });
         if found.is_none() {
             self.tell(
-                error("exchanged-numbers", "`exchanged` must be two numbers between 0 and 1: a correlation, and a difference of two", field)
-                    .help("write `exchanged  from 0.5, by 0.3`"),
+                error("exchanged-numbers", "`exchanged` must be numbers between 0 and 1: a correlation, a difference of two, and from which one on two sections are alike", field)
+                    .help("write `exchanged  from 0.5, by 0.3` or `exchanged  from 0.5, by 0.3, alike from 0.7`"),
             );
         }
         found

@@ -154,7 +154,7 @@ impl Checker<'_> {
         scope.reduce = Some(Reduce { side, ..reduce });
         let found = self.expr(argument, scope);
         scope.reduce = Some(reduce);
-        found
+        Some(Expr { span: span.clone(), ..found? })
     }
 
     /// The same number of the other positions of a plausibility rule: `siblings(noise_floor)`.

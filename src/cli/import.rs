@@ -5,7 +5,6 @@ use crate::certify::{Compiled, certify, compile};
 use crate::check::Overrides;
 use crate::check::plan::{Plan, Side};
 use crate::import::draft::{With, draft, groups, relative_to};
-use crate::import::exchanged::exchanged;
 use crate::import::mapping::{self, Mapping, Paths};
 use crate::prepare::for_import;
 use crate::report::findings;
@@ -76,7 +75,7 @@ impl Import {
             out.display()
         ));
         if !console.quiet {
-            look(&mapping, compiled.as_ref(), out, console);
+            look(compiled.as_ref(), out, console);
         }
         Ok(Exit::Done)
     }
@@ -148,14 +147,12 @@ fn checked(
     Some((mapping, compiled))
 }
 
-/// What is told about the campaign that was made: exchanged channels, and the findings of the
-/// protocol.
-fn look(mapping: &Mapping, compiled: Option<&Compiled>, out: &Path, console: &Console) {
+/// What is told about the campaign that was made: the findings of the protocol.
+fn look(compiled: Option<&Compiled>, out: &Path, console: &Console) {
     let mut problems = Problems::default();
     let Some(mut campaign) = Campaign::open(out, &mut problems) else {
         return console.problems(&problems);
     };
-    console.problems(&Problems(exchanged(mapping, &campaign)));
     let Some(compiled) = compiled else { return };
     match find::in_all(&compiled.plan, &compiled.graph, std::slice::from_mut(&mut campaign)) {
         Ok(found) => {
@@ -196,6 +193,7 @@ fn as_stated(plan: &Plan, findings: Vec<Finding>) -> Vec<Finding> {
     let stated = |mut finding: Finding| {
         let rule = plan.plausibility.iter().find(|rule| rule.name == finding.code);
         finding.consequence = rule.map_or(finding.consequence, |rule| consequence(rule.otherwise));
+        finding.explains = as_stated(plan, finding.explains);
         finding
     };
     findings.into_iter().map(stated).collect()

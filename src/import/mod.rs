@@ -7,7 +7,6 @@
 //! | `process/` | from a file to the record of a section |
 //! | `runs`, `drift` | whole runs; the drift of the distance along them |
 //! | `write` | the campaign, with an account of what was done |
-//! | `exchanged` | after the import: channels that agree better with another one |
 //! | `draft/` | a mapping proposed from the files themselves |
 
 #![allow(clippy::cast_precision_loss)]
@@ -15,7 +14,6 @@
 pub mod check;
 pub mod draft;
 mod drift;
-pub mod exchanged;
 pub mod mapping;
 pub mod process;
 mod runs;

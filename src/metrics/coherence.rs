@@ -1,6 +1,7 @@
 //! Coherence of two signals: the share of one that depends linearly on the other, as a function of
 //! frequency (Welch).
 
+use std::cell::OnceCell;
 use std::f64::consts::TAU;
 use std::ops::Range;
 
@@ -22,6 +23,8 @@ const FEWEST: usize = 8;
 /// Where the content of a signal is its noise: this share of the spectrum, up to its end. A record
 /// has no content of its own there: its anti-aliasing filter is below.
 const TOP: f64 = 0.4;
+/// It begins at so many times the end of the band, or content of the signal reaches into it.
+const CLEAR: f64 = 5.0;
 /// Largest shift between two signals that share content, as a share of their length.
 const FARTHEST: f64 = 0.25;
 /// Windows that overlap by half are not independent: so many of them count (Hann).
@@ -57,14 +60,17 @@ pub fn in_band(simulated: &[f64], measured: &[f64], rate: f64, (low, high): (f64
     Ok(sum / count as f64)
 }
 
+/// The simulated and the measured signal, and the shift at which they agree best, once it is known.
+pub type Both<'a> = (&'a [f64], &'a [f64], &'a OnceCell<isize>);
+
 /// The share of the content of a band that both signals have in common, wherever one lies against
 /// the other: 1 where one is made from the other, about 0 where they are independent, as two noises
 /// are. It is the mean coherence at the best shift, less what unrelated signals have by chance.
 ///
 /// # Errors
 /// Fewer samples than eight windows; no spectral line in the band.
-pub fn shared(simulated: &[f64], measured: &[f64], rate: f64, band: (f64, f64)) -> Metric {
-    let spectra = Spectra::aligned(simulated, measured, rate, band)?;
+pub fn shared(of: Both<'_>, rate: f64, band: (f64, f64)) -> Metric {
+    let spectra = Spectra::aligned(of, rate, band)?;
     let lines = spectra.lines(rate, band)?;
     let count = lines.len() as f64;
     Ok(lines.map(|line| spectra.beyond_chance(line)).sum::<f64>() / count)
@@ -77,8 +83,11 @@ pub fn shared(simulated: &[f64], measured: &[f64], rate: f64, band: (f64, f64)) 
 ///
 /// # Errors
 /// As [`shared`]; both signals are without noise.
-pub fn unexplained(simulated: &[f64], measured: &[f64], rate: f64, band: (f64, f64)) -> Metric {
-    let spectra = Spectra::aligned(simulated, measured, rate, band)?;
+pub fn unexplained(of: Both<'_>, rate: f64, band: (f64, f64)) -> Metric {
+    if (1.0 - TOP) * rate / 2.0 < CLEAR * band.1 {
+        return undefined("the sampling rate is too low to tell noise from the signal");
+    }
+    let spectra = Spectra::aligned(of, rate, band)?;
     let lines = spectra.lines(rate, band)?;
     let end = spectra.of_simulated.len();
     let top = ((1.0 - TOP) * end as f64) as usize..end;
@@ -171,13 +180,16 @@ impl Spectra {
 
     /// At the shift at which both agree best, with windows as long as the band needs.
     fn aligned(
-        simulated: &[f64],
-        measured: &[f64],
+        (simulated, measured, shift): Both<'_>,
         rate: f64,
         (low, high): (f64, f64),
     ) -> Result<Self, Undefined> {
-        let most = (FARTHEST * simulated.len() as f64) as usize;
-        let shift = best_shift(simulated, measured, most, Agreement::Correlation)?;
+        if shift.get().is_none() {
+            let most = (FARTHEST * simulated.len() as f64) as usize;
+            let found = best_shift(simulated, measured, most, Agreement::Correlation)?;
+            shift.get_or_init(|| found);
+        }
+        let shift = shift.get().copied().unwrap_or_default();
         let (simulated, measured) = overlap(simulated, measured, shift);
         let wanted = (LINES * rate / (high - low)).ceil();
         let least = FEWEST * SHORTEST / 2;
@@ -279,7 +291,9 @@ mod tests {
     #[test]
     fn what_is_made_of_a_measurement_shares_its_noise() {
         let [simulated, measured, other, _] = sides(7);
-        let of = |s: &[f64]| shared(s, &measured, 200.0, (60.0, 100.0)).expect("a number");
+        let of = |s: &[f64]| {
+            shared((s, &measured, &OnceCell::new()), 200.0, (60.0, 100.0)).expect("a number")
+        };
         let with = |all: &[f64], by: f64| -> Vec<f64> {
             all.iter().zip(&other).map(|(a, b)| a + by * b).collect()
         };
@@ -297,21 +311,26 @@ mod tests {
     #[test]
     fn what_is_left_of_a_copy_is_white_and_the_error_of_a_model_is_not() {
         let [simulated, measured, other, track] = sides(11);
-        let of = |s: &[f64], m: &[f64]| unexplained(s, m, 200.0, (1.0, 10.0)).expect("a number");
+        let of = |s: &[f64], m: &[f64]| {
+            unexplained((s, m, &OnceCell::new()), 200.0, (1.0, 10.0)).expect("a number")
+        };
         assert!(of(&simulated, &measured) > 0.4, "{}", of(&simulated, &measured));
         let noisy = |all: &[f64]| -> Vec<f64> {
             all.iter().zip(&other).map(|(a, b)| 1.1 * a + 0.2 + b).collect()
         };
         assert!(of(&noisy(&measured), &measured) < 0.1, "{}", of(&noisy(&measured), &measured));
         assert!(of(&track, &noisy(&track)) < 0.1, "{}", of(&track, &noisy(&track)));
+        let slowly = unexplained((&simulated, &measured, &OnceCell::new()), 100.0, (1.0, 10.0))
+            .expect_err("too low");
+        assert!(slowly.reason.contains("sampling rate"), "{slowly:?}");
     }
 
     #[test]
     fn a_short_section_says_so() {
         let a = noise(100, 1);
-        let why = shared(&a, &a, 200.0, (60.0, 100.0)).expect_err("short");
+        let why = shared((&a, &a, &OnceCell::new()), 200.0, (60.0, 100.0)).expect_err("short");
         assert!(why.reason.contains("too short"), "{why:?}");
         let a = noise(4000, 1);
-        assert!(shared(&a, &a, 100.0, (60.0, 100.0)).is_err());
+        assert!(shared((&a, &a, &OnceCell::new()), 100.0, (60.0, 100.0)).is_err());
     }
 }

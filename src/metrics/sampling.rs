@@ -1,6 +1,43 @@
 //! How a signal was recorded: held values, saturation, quantisation, noise.
 
+use std::cell::OnceCell;
+use std::ops::Deref;
+
+use super::spectrum::strongest_line;
 use super::statistics::{Divisor, median, standard_deviation};
+
+/// The samples of a signal, with what several of its numbers are computed from, each once.
+#[derive(Debug)]
+pub struct Traits<'a> {
+    samples: &'a [f64],
+    differences: OnceCell<Option<Differences>>,
+    line: OnceCell<Option<(f64, f64)>>,
+}
+
+/// Magnitudes of the fourth differences, and their median.
+type Differences = (Vec<f64>, f64);
+
+impl<'a> Traits<'a> {
+    pub const fn of(samples: &'a [f64]) -> Self {
+        Self { samples, differences: OnceCell::new(), line: OnceCell::new() }
+    }
+
+    /// As [`strongest_line`].
+    pub fn line(&self) -> Option<(f64, f64)> {
+        *self.line.get_or_init(|| strongest_line(self))
+    }
+
+    fn differences(&self) -> Option<&Differences> {
+        self.differences.get_or_init(|| fourth_differences(self)).as_ref()
+    }
+}
+
+impl Deref for Traits<'_> {
+    type Target = [f64];
+    fn deref(&self) -> &[f64] {
+        self.samples
+    }
+}
 
 /// Share of the samples in the longest run of equal values: near 0 for a signal that varies, 1 for
 /// a constant one.
@@ -50,13 +87,13 @@ pub fn resolution(values: &[f64]) -> Option<f64> {
 /// and shocks do not count.
 ///
 /// `None` for fewer than nine samples, or with one that is not finite.
-pub fn noise_floor(values: &[f64]) -> Option<f64> {
+pub fn noise_floor(values: &Traits<'_>) -> Option<f64> {
     /// Standard deviation of the fourth difference of white noise: the root of 1 + 16 + 36 + 16 +
     /// 1.
     const OF_DIFFERENCE: f64 = 8.366_600_265_340_756;
     /// Median magnitude of a normal distribution.
     const MEDIAN: f64 = 0.674_489_750_196_082;
-    median(&fourth_differences(values)?).map(|middle| middle / (MEDIAN * OF_DIFFERENCE))
+    Some(values.differences()?.1 / (MEDIAN * OF_DIFFERENCE))
 }
 
 /// By how much a single sample is out of line with two neighbours on either side, at most, in the
@@ -64,10 +101,10 @@ pub fn noise_floor(values: &[f64]) -> Option<f64> {
 /// rises over several samples with less.
 ///
 /// `None` for fewer than nine samples, or with one that is not finite.
-pub fn spike(values: &[f64]) -> Option<f64> {
+pub fn spike(values: &Traits<'_>) -> Option<f64> {
     /// The weight of the middle sample in a fourth difference.
     const OF_MIDDLE: f64 = 6.0;
-    let largest = fourth_differences(values)?.into_iter().fold(0.0, f64::max);
+    let largest = values.differences()?.0.iter().copied().fold(0.0, f64::max);
     Some(largest / OF_MIDDLE)
 }
 
@@ -77,14 +114,14 @@ pub fn spike(values: &[f64]) -> Option<f64> {
 ///
 /// `None` for fewer than nine samples, with one that is not finite, or where most of the signal is
 /// smooth.
-pub fn smooth_stretch(values: &[f64]) -> Option<f64> {
+pub fn smooth_stretch(values: &Traits<'_>) -> Option<f64> {
     /// What counts as smooth, as a share of the median of the differences: of white noise, one
     /// difference in ten is that small, and ten in a row are one in 10^10.
     const SMOOTH: f64 = 0.2;
-    let differences = fourth_differences(values)?;
-    let most = SMOOTH * median(&differences).filter(|middle| *middle > 0.0)?;
+    let (differences, middle) = values.differences()?;
+    let most = SMOOTH * Some(middle).filter(|middle| **middle > 0.0)?;
     let (mut longest, mut run) = (0_usize, 0);
-    for difference in &differences {
+    for difference in differences {
         run = if *difference <= most { run + 1 } else { 0 };
         longest = longest.max(run);
     }
@@ -94,11 +131,13 @@ pub fn smooth_stretch(values: &[f64]) -> Option<f64> {
 /// Samples of a fourth difference.
 const WINDOW: usize = 5;
 
-/// Their magnitudes; of nine samples at least, for a median.
-fn fourth_differences(values: &[f64]) -> Option<Vec<f64>> {
+/// Of nine samples at least, for a median.
+fn fourth_differences(values: &[f64]) -> Option<Differences> {
     ends(values).filter(|_| values.len() >= 2 * WINDOW - 1)?;
     let fourth = |[a, b, c, d, e]: &[f64; WINDOW]| (a - 4.0 * b + 6.0 * c - 4.0 * d + e).abs();
-    Some(values.array_windows().map(fourth).collect())
+    let all: Vec<f64> = values.array_windows().map(fourth).collect();
+    let middle = median(&all)?;
+    Some((all, middle))
 }
 
 /// Share of the samples that repeat the one before, where the signal changes by more than a step of
@@ -208,13 +247,14 @@ mod tests {
         let noisy: Vec<f64> = (0..2000)
             .map(|at| wave(at) + 0.2 * ((0..12).map(|_| uniform()).sum::<f64>() - 6.0))
             .collect();
-        let found = noise_floor(&noisy).expect("finite");
+        let found = noise_floor(&Traits::of(&noisy)).expect("finite");
         assert!((found - 0.2).abs() < 0.02, "{found}");
         let smooth: Vec<f64> = (0..2000).map(wave).collect();
-        assert!(noise_floor(&smooth).is_some_and(|floor| floor < 1e-4));
+        assert!(noise_floor(&Traits::of(&smooth)).is_some_and(|floor| floor < 1e-4));
         assert_eq!(
-            (noise_floor(&[1.0; 8]), noise_floor(&[1.0, f64::NAN]), noise_floor(&[3.0; 20])),
-            (None, None, Some(0.0))
+            [&[1.0; 8] as &[f64], &[1.0, f64::NAN], &[3.0; 20]]
+                .map(|of| noise_floor(&Traits::of(of))),
+            [None, None, Some(0.0)]
         );
     }
 
@@ -272,7 +312,7 @@ mod tests {
         let with = |change: &dyn Fn(usize) -> f64| {
             let changed: Vec<f64> =
                 wave.iter().enumerate().map(|(at, value)| value + change(at)).collect();
-            spike(&changed).expect("finite")
+            spike(&Traits::of(&changed)).expect("finite")
         };
         assert!(with(&|_| 0.0) < 0.15);
         let single = with(&|at| if at == 400 { 4.0 } else { 0.0 });
@@ -282,8 +322,8 @@ mod tests {
         let peak = with(&|at| 4.0 * (-((at as f64 - 400.0) / 4.0).powi(2)).exp());
         assert!(peak < 0.3, "{peak}");
         assert_eq!(
-            (spike(&[1.0; 8]), spike(&[f64::NAN; 20]), spike(&[1.0; 9])),
-            (None, None, Some(0.0))
+            [&[1.0; 8] as &[f64], &[f64::NAN; 20], &[1.0; 9]].map(|of| spike(&Traits::of(of))),
+            [None, None, Some(0.0)]
         );
     }
 
@@ -296,14 +336,14 @@ mod tests {
             for (at, value) in values[300..340].iter_mut().enumerate() {
                 *value = with(at as f64);
             }
-            smooth_stretch(&values).expect("finite")
+            smooth_stretch(&Traits::of(&values)).expect("finite")
         };
         for with in [&(|_| 1.0) as &dyn Fn(f64) -> f64, &|at| 0.1 * at, &|at| 0.01 * at * at] {
             assert!((40.0..46.0).contains(&filled(with)), "{}", filled(with));
         }
-        assert!(smooth_stretch(&wave).is_some_and(|longest| longest < 14.0));
+        assert!(smooth_stretch(&Traits::of(&wave)).is_some_and(|longest| longest < 14.0));
         // Most of it is smooth: no stretch stands out.
-        assert_eq!(smooth_stretch(&[2.0; 50]), None);
+        assert_eq!(smooth_stretch(&Traits::of(&[2.0; 50])), None);
     }
 
     /// Each value written four times; a coarse signal repeats its values, too, but changes by one

@@ -63,15 +63,24 @@ impl Row {
             }
         };
         let subject = [named(|at| at.channel.as_ref()), named(|at| at.record.as_ref())];
+        let mut also: IndexSet<&str> = finding.with_explained().filter_map(Finding::rule).collect();
+        also.shift_remove(finding.rule().unwrap_or_default());
+        let also: Vec<&str> = also.into_iter().collect();
+        let also = match also.as_slice() {
+            [] => String::new(),
+            all => format!("; hence also: {}", all.join(", ")),
+        };
+        let consequence = finding.with_explained().map(|one| one.consequence).max();
+        let consequence = consequence.unwrap_or(finding.consequence);
         let subject: Vec<String> = subject.into_iter().filter(|part| !part.is_empty()).collect();
         Self {
             code: finding.code.clone(),
             subject: subject.join(", "),
             sections: named(|at| at.section.as_ref()),
-            says: number::raised(finding.first.text()),
+            says: number::raised(finding.first.text()) + &also,
             cause: words::or_nothing(finding.cause.as_ref()),
-            consequence: finding.consequence.in_words(),
-            tone: if finding.consequence == Consequence::Note { Tone::Open } else { Tone::Bad },
+            consequence: consequence.in_words(),
+            tone: if consequence == Consequence::Note { Tone::Open } else { Tone::Bad },
         }
     }
 }

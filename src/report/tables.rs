@@ -109,12 +109,15 @@ pub fn certification(found: &Certification) -> Result<Vec<File>, csv::Error> {
         .flat_map(|section| entries(&section.checks, json!({"section": section.section})));
     files.push(table("checks", "section, requirement = title, holds, found = says", checks)?);
     let titles = format!(
-        "rule = code, {campaign}section, record, channel, value, expected, unit, finding = says, likely cause = cause, consequence, places"
+        "rule = code, explained by, {campaign}section, record, channel, value, expected, unit, finding = says, likely cause = cause, consequence, places"
     );
-    let findings = found.findings.iter().map(|of| {
-        let places = super::findings::places(of);
-        let more = json!({"consequence": of.consequence.in_words(), "places": places});
-        Entry { of, more }
+    let findings = found.findings.iter().flat_map(|first| {
+        first.with_explained().map(move |of| {
+            let by = (!std::ptr::eq(of, first)).then_some(&first.code);
+            let (consequence, places) = (of.consequence.in_words(), super::findings::places(of));
+            let more = json!({"explained by": by, "consequence": consequence, "places": places});
+            Entry { of, more }
+        })
     });
     files.push(table("findings", &titles, findings)?);
     let titles = "zone, title, condition, given, used, minimum, holds";

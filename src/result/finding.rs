@@ -19,6 +19,9 @@ pub struct Finding {
     #[schemars(with = "told::NoneOrCause<Reason>")]
     pub cause: Option<Reason>,
     pub consequence: Consequence,
+    /// Findings of other rules at the same places, which probably have the same cause.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub explains: Vec<Self>,
     /// All places; empty until the findings of a campaign are joined.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub places: Vec<Occurrence>,
@@ -48,7 +51,9 @@ pub struct Occurrence {
 }
 
 /// Influence of a finding on the verdict.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
+)]
 #[serde(rename_all = "snake_case")]
 pub enum Consequence {
     /// Reported only.
@@ -100,6 +105,7 @@ impl Finding {
             first: first.into(),
             cause: None,
             consequence: Consequence::Note,
+            explains: Vec::new(),
             places: Vec::new(),
         }
     }
@@ -122,6 +128,16 @@ impl Finding {
             }
         }
         joined
+    }
+
+    /// Title of the plausibility rule that it comes from.
+    pub fn rule(&self) -> Option<&str> {
+        self.first.data.rule()
+    }
+
+    /// The finding, and those that it explains.
+    pub fn with_explained(&self) -> impl Iterator<Item = &Self> {
+        std::iter::once(self).chain(&self.explains)
     }
 
     /// All places.

@@ -526,6 +526,16 @@ pub enum FindingData {
         correlation: f64,
         own_correlation: f64,
     },
+    /// A measured record, or a channel of it, does not belong where it stands: it agrees with another
+    /// section, with the measurement there or better than with its own simulation; or with none,
+    /// though others do.
+    Matched {
+        rule: String,
+        section: Option<String>,
+        record: Option<String>,
+        correlation: f64,
+        own_correlation: Option<f64>,
+    },
     /// A record is not as an import wrote it; why, if the campaign says so.
     RecordChanged { file: String, imported: bool, reason: Option<String> },
     /// As earlier versions told a requirement that could not be checked.
@@ -592,6 +602,7 @@ impl FindingData {
             | Self::OverSections { rule, .. }
             | Self::Copies { rule, .. }
             | Self::RuleNotChecked { rule, .. }
+            | Self::Matched { rule, .. }
             | Self::Exchanged { rule, .. } => Some(rule),
             _ => None,
         }
@@ -607,6 +618,8 @@ impl FindingData {
                 self.rule() == other.rule() && slope == other_one
             }
             (Self::Copies { .. }, Self::Copies { .. })
+            | (Self::Exchanged { .. }, Self::Exchanged { .. })
+            | (Self::Matched { .. }, Self::Matched { .. })
             | (Self::RuleNotChecked { .. }, Self::RuleNotChecked { .. }) => {
                 self.rule() == other.rule()
             }
@@ -614,9 +627,6 @@ impl FindingData {
                 Self::RecordChanged { imported, reason, .. },
                 Self::RecordChanged { imported: of, reason: other_one, .. },
             ) => (imported, reason) == (of, other_one),
-            (Self::Exchanged { other: with, .. }, Self::Exchanged { other: other_one, .. }) => {
-                self.rule() == other.rule() && with == other_one
-            }
             _ => self == other,
         }
     }

@@ -30,7 +30,7 @@ pub use write::write;
 /// other numbers.
 pub const PROGRAM: &str = env!("CARGO_PKG_VERSION");
 /// The form of the files.
-pub const FORM: u32 = 4;
+pub const FORM: u32 = 5;
 
 /// What all parts of a campaign have in common.
 #[derive(Clone, Debug, Serialize, Deserialize)]

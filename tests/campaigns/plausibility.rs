@@ -416,3 +416,89 @@ fn near_is_a_share_a_tolerance_or_a_factor() {
         assert_eq!(told(require), expected, "{require}");
     }
 }
+
+/// The findings of rules in a changed copy of the sound example: codes, and what each explains.
+fn told(change: impl FnOnce(&mut Folder, &[String])) -> Vec<Finding> {
+    let found = with(|folder| {
+        let sections = folder.sections("");
+        change(folder, &sections);
+    });
+    found.findings.into_iter().filter(|finding| finding.rule().is_some()).collect()
+}
+
+/// One fault gives one finding, two at most, and the first names it; what follows from it stands
+/// with it.
+#[test]
+fn each_fault_is_told_once() {
+    type Change = fn(&[f64]) -> Vec<f64>;
+    let spikes: Change = |values| {
+        let spike =
+            |(at, value): (usize, &f64)| if at % 400 == 200 { value + 60.0 } else { *value };
+        values.iter().enumerate().map(spike).collect()
+    };
+    let late: Change = |values| {
+        let before = std::iter::repeat_n(&values[0], 40);
+        before.chain(values).take(values.len()).copied().collect()
+    };
+    let times: Change = |values| values.iter().map(|value| 1000.0 * value).collect();
+    let dead: Change = |values| vec![values[0]; values.len()];
+    let every = &["Y_", "Q_", "ay_", "az_"][..];
+    for (channels, change, code, channel) in [
+        (&["Q_1L"][..], dead, "live", "Q_1L"),
+        (&["Y_1R"], times, "same_size", "Y_1R"),
+        (&["Q_3R"], spikes, "spikes", "Q_3R"),
+        (every, late, "aligned", "az_I"),
+    ] {
+        let found = told(|folder, all| folder.channels(Side::Measurement, all, channels, change));
+        let codes: Vec<&str> = found.iter().map(|finding| finding.code.as_str()).collect();
+        assert!(codes.first() == Some(&code) && codes.len() <= 2, "{code}: {codes:?}");
+        assert_eq!(found[0].first.channel.as_deref(), Some(channel));
+        assert!(!found[0].explains.is_empty(), "{code}");
+    }
+}
+
+/// Records that stand where they do not belong: another section, a repeated curve, channels of
+/// another wheelset, a channel of another section. Each removes its sections.
+#[test]
+fn records_that_do_not_belong_together() {
+    let of = |finding: &Finding| {
+        let sections: Vec<&str> =
+            finding.places().iter().filter_map(|place| place.section.as_deref()).collect();
+        (finding.code.clone(), sections.join(" "), finding.consequence)
+    };
+    let swapped = told(|folder, all| {
+        let name = |at: usize| format!("measurement/{}.csv", all[at]);
+        let (one, other) = (folder.tables[&name(1)].clone(), folder.tables[&name(2)].clone());
+        folder.tables.insert(name(1), other);
+        folder.tables.insert(name(2), one);
+    });
+    let both = (String::from("exchanged"), String::from("S02 S03"), Consequence::NotUsed);
+    assert_eq!(swapped.first().map(of), Some(both), "{swapped:?}");
+    assert!(swapped[0].first.text().contains("simulation of section S03"));
+    let noisy = |values: &[f64]| -> Vec<f64> {
+        let noise = |at: usize| 0.3 * ((at * 7919 % 1009) as f64 / 1009.0 - 0.5);
+        values.iter().enumerate().map(|(at, value)| value * (1.0 + 0.01 * noise(at))).collect()
+    };
+    let repeated = told(|folder, all| {
+        for side in [Side::Measurement, Side::Simulation] {
+            let kind = side.folders()[0];
+            let record = folder.tables[&format!("{kind}/{}.csv", all[1])].clone();
+            folder.tables.insert(format!("{kind}/{}.csv", all[2]), record);
+            folder.channels(side, &all[2..3], &["Y_", "Q_", "ay_", "az_"], noisy);
+        }
+    });
+    let later = (String::from("exchanged"), String::from("S03"), Consequence::NotUsed);
+    assert!(repeated.iter().map(of).any(|found| found == later), "{repeated:?}");
+    let wheelsets = told(|folder, all| {
+        for section in all {
+            let table = folder.tables.get_mut(&format!("measurement/{section}.csv"));
+            let table = table.expect("a record");
+            for name in ["Y_", "Q_"].iter().flat_map(|name| ["R", "L"].map(|side| (name, side))) {
+                let column = |wheelset| table.column(&format!("{}{wheelset}{}", name.0, name.1));
+                let (one, other) = (column(1).expect("Y"), column(3).expect("Y"));
+                table.rows.iter_mut().for_each(|row| row.swap(one, other));
+            }
+        }
+    });
+    assert_eq!((wheelsets[0].code.as_str(), wheelsets.len()), ("exchanged", 1), "{wheelsets:?}");
+}

@@ -1,6 +1,8 @@
 //! Zones, checks, plausibility rules, the rules of sections, domains.
 
-use super::{Expr, Find, Input, Keep, Report, Step};
+use std::collections::BTreeSet;
+
+use super::{Expr, Find, Input, Keep, Kind, Report, Step, Taken};
 use crate::metrics::percentile::Method;
 use crate::source::Span;
 use crate::units::Unit;
@@ -59,11 +61,23 @@ pub struct Plausibility {
     pub test: Test,
     pub unless: Option<Expr>,
     pub otherwise: OnFault,
+    /// Whether a finding at most positions is one of the record, of which all others follow.
+    pub concerns_record: bool,
     pub cause: Option<String>,
     pub span: Span,
 }
 
 impl Plausibility {
+    /// The order of findings: first those of whole records, then those that a channel shows by
+    /// itself, then those that need something else to compare it with.
+    pub fn rank(&self) -> u8 {
+        match &self.test {
+            _ if self.concerns_record => 0,
+            Test::Require(requirement) if requirement.of_one_channel(&self.signals) => 1,
+            _ => 2,
+        }
+    }
+
     /// What follows from a finding at a position. One at a position that no quantity reads is told,
     /// and the section stays.
     pub fn otherwise_at(&self, position: &str) -> OnFault {
@@ -91,6 +105,37 @@ pub struct Requirement {
     /// Where it is a requirement of all sections together, and not of each.
     pub over_sections: Option<OverSections>,
     pub words: String,
+}
+
+impl Requirement {
+    /// Whether it is on samples of one channel of one record alone, whatever vehicle and section
+    /// are.
+    fn of_one_channel(&self, signals: &[(String, Expr)]) -> bool {
+        let data = |part: &Expr| {
+            matches!(part.kind, Kind::Vehicle(_) | Kind::Column(_) | Kind::Start | Kind::End)
+        };
+        let one_side = self.inputs.array_windows().all(|[a, b]| a.side == b.side);
+        let own =
+            |input: &Input| input.signal.is_none() && matches!(input.taken, Taken::Reduced(_));
+        self.over_sections.is_none()
+            && !self.holds.any(&data)
+            && one_side
+            && self.inputs.iter().all(own)
+            && signals.iter().all(|(_, signal)| columns(signal).len() == 1)
+    }
+}
+
+/// Names of the columns that a signal is computed from.
+pub fn columns(signal: &Expr) -> BTreeSet<&str> {
+    let mut all = BTreeSet::new();
+    let mut parts = vec![signal];
+    while let Some(part) = parts.pop() {
+        if let Kind::Channel { column, .. } = &part.kind {
+            all.insert(column.as_str());
+        }
+        parts.extend(part.parts());
+    }
+    all
 }
 
 /// Two numbers that are compared.
@@ -153,14 +198,16 @@ pub struct Distinct {
     pub records: bool,
 }
 
-/// From when on a measured channel is reported that correlates with another simulated channel of
-/// its rule.
+/// From when on a measured record or channel is reported that agrees with the simulation of another
+/// section or with another simulated channel of its rule.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exchanged {
-    /// Least correlation with the other channel.
+    /// Least correlation with the other one.
     pub least: f64,
-    /// By how much it exceeds that with its own channel.
+    /// By how much it exceeds that with its own.
     pub more: f64,
+    /// From which correlation on the measurements of two sites are reported, if they are.
+    pub alike: Option<f64>,
 }
 
 /// How sections are treated.

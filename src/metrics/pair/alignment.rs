@@ -12,6 +12,10 @@ const FARTHEST: f64 = 0.25;
 /// unrelated ranges of 250 m with wavelengths of 10 m (25 waves), the largest correlation at about
 /// 50 independent shifts is seldom above 0.5.
 const FOLLOWS: f64 = 0.5;
+/// Agreement at two shifts that differs by less is that of chance: the error of a correlation over
+/// 25 waves. The nearer shift counts. A body that sways has nearly equal waves, and agrees again one
+/// wave farther.
+const BY_CHANCE: f64 = 0.15;
 
 /// Shift to be added to the measured axis for the largest correlation with the simulated signal, in
 /// the unit of the axis.
@@ -41,6 +45,12 @@ pub fn shift(axis: &[f64], simulated: &[f64], measured: &[f64]) -> Metric {
         .map(|found| found.unwrap_or(f64::NEG_INFINITY))
         .collect();
     let best = (0..all.len()).fold(0, |best, at| if all[at] > all[best] { at } else { best });
+    let peak = |at: &usize| all[at - 1] <= all[*at] && all[at + 1] <= all[*at];
+    let nearest = (1..all.len() - 1)
+        .filter(|at| all[*at] > all[best] - BY_CHANCE)
+        .filter(peak)
+        .min_by_key(|at| at.abs_diff(most));
+    let best = nearest.unwrap_or(best);
     if all[best] < FOLLOWS {
         return undefined("the signals are not correlated at any shift");
     }
@@ -117,6 +127,19 @@ mod tests {
         assert!(shift(&axis, &simulated, &noise).is_err());
         assert!(shift(&axis, &simulated, &vec![1.0; 1000]).is_err());
         assert!(shift(&[], &[], &[]).is_err());
+    }
+
+    /// Waves that are nearly equal agree again one wave farther.
+    #[test]
+    fn of_equal_waves_the_nearest_counts() {
+        let axis: Vec<f64> = (0..1500).map(|k| 0.2 * f64::from(k)).collect();
+        let wave = |at: f64| (at / 3.0).sin();
+        let simulated: Vec<f64> = axis.iter().map(|x| wave(*x)).collect();
+        // The last waves are larger: three waves farther, they are not in the overlap.
+        let grown = |x: f64| if x > 260.0 { 3.0 } else { 1.0 };
+        let measured: Vec<f64> = axis.iter().map(|x| grown(*x) * wave(x + 1.0)).collect();
+        let found = shift(&axis, &simulated, &measured).expect("related");
+        assert!((found - 1.0).abs() < 0.5, "{found}");
     }
 
     #[test]

@@ -12,6 +12,7 @@ use crate::result::study::Reduction;
 use crate::result::{
     DataItem, DomainRange, DomainResult, FileHash, Finding, Remark, SectionResult, Trace,
 };
+use crate::run::data_rules::causes;
 use crate::run::describe::traces::{self, Kept, Signals};
 use crate::run::describe::{domain, not_asked, told};
 use crate::run::estimate::extrapolation;
@@ -95,7 +96,7 @@ pub fn judge(
         judged,
         application: application.clone(),
         traces,
-        findings: Finding::joined(findings),
+        findings: causes::by_cause(plan, units.len(), findings),
         notes,
         files: files.clone(),
         reduction: reduction.clone(),

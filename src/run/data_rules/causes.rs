@@ -1,6 +1,12 @@
-//! Probable cause of a value that differs from the expected one by a factor.
+//! Probable cause of a value that differs from the expected one by a factor; and which finding
+//! explains which others.
 
-use crate::result::{Reason, SuspectedFactor};
+use std::collections::{BTreeSet, HashMap};
+
+use indexmap::IndexMap;
+
+use crate::check::plan::{Plan, Plausibility, Test, columns};
+use crate::result::{Finding, FindingData, Occurrence, Reason, SuspectedFactor};
 use crate::units::Dimension;
 
 /// A factor between the value found and the expected value, with its most probable cause. Only
@@ -65,6 +71,112 @@ pub fn likely(found: f64, expected: f64, of: Dimension) -> Option<Reason> {
     let factor = if near(1.0) { None } else { suspected(false).or_else(|| suspected(true)) };
     let reversed = ratio < 0.0;
     (reversed || factor.is_some()).then_some(Reason::WrongSize { reversed, factor })
+}
+
+/// A finding explains another one if it stands at this share of the places of the other one.
+const EXPLAINED: f64 = 0.5;
+/// A rule that concerns records found one where it finds this share of its positions.
+const OF_RECORD: f64 = 0.5;
+/// What stands in this share of the sections explains what is found over all sections.
+const OF_SECTIONS: f64 = 0.5;
+
+/// The findings of a campaign, each cause once, the likeliest first: those that another one
+/// explains stand with it. One explains what stands behind it in the order of the rules, at the
+/// same channels of the same sections; one of a record explains what is found in its sections.
+pub fn by_cause(plan: &Plan, sections: usize, findings: Vec<Finding>) -> Vec<Finding> {
+    let mut order: HashMap<&str, (u8, usize)> = HashMap::new();
+    for (at, rule) in plan.plausibility.iter().enumerate() {
+        order.entry(&rule.name).or_insert((rule.rank(), at));
+    }
+    let mut joined = Finding::joined(findings);
+    joined.sort_by_key(|finding| order.get(finding.code.as_str()).copied().unwrap_or((u8::MAX, 0)));
+    let mut kept: Vec<(Finding, Reach)> = Vec::new();
+    for finding in joined {
+        let own = Reach::of(plan, sections, &finding);
+        let by =
+            |(of, reach): &&mut (Finding, Reach)| reach.explains(&own, of.code == finding.code);
+        match kept.iter_mut().find(by) {
+            Some((first, _)) => first.explains.push(finding),
+            None => kept.push((finding, own)),
+        }
+    }
+    kept.into_iter().map(|(finding, _)| finding).collect()
+}
+
+/// What a finding is about.
+struct Reach {
+    /// Whether it comes from a rule, and whether that found a fault of the record.
+    of_rule: bool,
+    of_record: bool,
+    /// Whether it stands in most sections.
+    in_most: bool,
+    /// By campaign and section, the record, if it is one of them, and the columns.
+    places: IndexMap<SectionOf, Vec<(Option<String>, BTreeSet<String>)>>,
+}
+
+/// The campaign and the section, if any.
+type SectionOf = (Option<String>, Option<String>);
+
+impl Reach {
+    fn of(plan: &Plan, sections: usize, finding: &Finding) -> Self {
+        let rules: Vec<&Plausibility> =
+            plan.plausibility.iter().filter(|rule| rule.name == finding.code).collect();
+        let mut places: IndexMap<SectionOf, Vec<_>> = IndexMap::new();
+        for at in finding.places() {
+            let own = places.entry((at.campaign.clone(), at.section.clone())).or_default();
+            own.push((at.record.clone(), columns_of(&rules, at)));
+        }
+        let positions: usize = rules.iter().map(|rule| rule.signals.len()).sum();
+        let found: BTreeSet<Option<&String>> =
+            finding.places().iter().map(|at| at.channel.as_ref()).collect();
+        let most = found.contains(&None) || found.len() as f64 >= OF_RECORD * positions as f64;
+        Self {
+            of_rule: !rules.is_empty(),
+            of_record: most && rules.iter().any(|rule| rule.concerns_record),
+            in_most: places.len() as f64 >= OF_SECTIONS * sections as f64,
+            places,
+        }
+    }
+
+    fn explains(&self, other: &Self, same_rule: bool) -> bool {
+        let (mut all, mut explained) = (0_usize, 0_usize);
+        for (section, places) in &other.places {
+            // What is found over all sections stands in each of them.
+            let over_all = || self.places.get(&(section.0.clone(), None));
+            let own: Vec<_> = match self.places.get(section).or_else(over_all) {
+                Some(own) => own.iter().collect(),
+                None if section.1.is_none() && self.in_most => {
+                    self.places.values().flatten().collect()
+                }
+                None => Vec::new(),
+            };
+            let covered = |(record, columns): &&(Option<String>, BTreeSet<String>)| {
+                own.iter().any(|(of, own)| {
+                    (of.is_none() || record.is_none() || of == record)
+                        && (self.of_record || same_rule || !own.is_disjoint(columns))
+                })
+            };
+            all += places.len();
+            explained += places.iter().filter(covered).count();
+        }
+        self.of_rule && other.of_rule && explained as f64 >= EXPLAINED * all as f64
+    }
+}
+
+/// The columns that were looked at; of a rule without channels those of the signals that it names.
+fn columns_of(rules: &[&Plausibility], at: &Occurrence) -> BTreeSet<String> {
+    let names: Vec<&str> = match &at.data {
+        FindingData::Copies { channels, .. } => channels.names.iter().map(String::as_str).collect(),
+        _ => at.channel.as_deref().into_iter().collect(),
+    };
+    let own = rules.iter().flat_map(|rule| &rule.signals);
+    let own = own.filter(|(name, _)| names.contains(&name.as_str())).map(|(_, signal)| signal);
+    let named = rules.iter().flat_map(|rule| match &rule.test {
+        Test::Require(requirement) => requirement.inputs.as_slice(),
+        _ => &[],
+    });
+    let named = named.filter_map(|input| input.signal.as_ref());
+    own.chain(named).flat_map(columns).map(Into::into).collect()
 }
 
 #[cfg(test)]

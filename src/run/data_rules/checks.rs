@@ -27,7 +27,7 @@ pub fn track_checks(
     values: &mut SectionValues,
 ) -> Result<NodeValues, Fault> {
     let (graph, campaign) = (section.work.graph, section.campaign());
-    let mut wanted = questions.wanted(graph, true);
+    let mut wanted = questions.wanted(graph, None);
     let of_checks = graph.checks.iter().flatten().map(|input| input.node);
     wanted.extend(of_checks.filter(|&node| graph.nodes[node].track));
     let there = || match campaign.record_source(RecordKind::Track, &section.unit.cell) {

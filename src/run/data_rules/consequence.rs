@@ -53,11 +53,8 @@ pub fn take_over(
             }
         }
         let name = unit.name.clone();
-        for finding in values
-            .findings
-            .iter()
-            .chain(of_section.get(name.as_str()).into_iter().flatten().copied())
-        {
+        let copies = of_section.get(name.as_str()).into_iter().flatten().copied();
+        for finding in copies.chain(&values.findings) {
             if finding.consequence == Consequence::NotUsed {
                 let finding = Box::new(finding.first.data.clone());
                 unit.refuse(Reason::Finding { finding }, false);

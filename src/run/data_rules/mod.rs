@@ -3,20 +3,21 @@
 //!
 //! | file | content |
 //! |---|---|
-//! | `causes` | the probable cause of a wrong value |
-//! | `plausibility`, `exchanged` | plausibility rules in one section |
+//! | `causes` | the probable cause of a wrong value; what one finding explains of others |
+//! | `plausibility` | plausibility rules in one section |
 //! | `checks` | checks of a section on its records |
 //! | `changed` | records that are not as an import wrote them |
 //! | `over_sections` | requirements that all sections meet together |
+//! | `matching` | records and channels that belong together, by their shapes in all sections |
 //! | `copies` | signals that are copies, in all sections |
 //! | `consequence` | sections that are not used, for what was found; faults that end a run |
 
-mod causes;
+pub mod causes;
 pub mod changed;
 mod checks;
 pub mod consequence;
 pub mod copies;
-mod exchanged;
+pub mod matching;
 pub mod over_sections;
 pub mod plausibility;
 

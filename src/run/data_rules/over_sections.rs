@@ -68,8 +68,6 @@ fn violated(asked: OverSections, compared: &Comparison, of: &[&Pooled]) -> Optio
     let list = |take: fn(&Pooled) -> f64| of.iter().map(|one| take(one)).collect::<Vec<f64>>();
     let (found, expected) = (list(|one| one.found), list(|one| one.expected));
     let bounds = median(&expected)?;
-    let over =
-        |by: f64| list(|one| one.found).iter().zip(&expected).map(|(f, e)| f - by * e).collect();
     let outside = |slope: bool, found: Estimate, least: Option<f64>, most: Option<f64>| {
         let beyond = most.is_some_and(|most| found.low > most)
             || least.is_some_and(|least| found.high < least);
@@ -80,18 +78,14 @@ fn violated(asked: OverSections, compared: &Comparison, of: &[&Pooled]) -> Optio
         Relation::AtLeast => outside(false, level(&found)?, Some(bounds), None),
         Relation::WithinFactor => None,
         Relation::Within(_) => {
-            let mut by = 1.0;
             if let Some((least, most)) = asked.slope
                 && let Some(steep) = slope(&expected, &found)
+                && let Some(violated) = outside(true, steep, Some(least), Some(most))
             {
-                if let Some(violated) = outside(true, steep, Some(least), Some(most)) {
-                    return Some(violated);
-                }
-                by = steep.value;
+                return Some(violated);
             }
             let room = median(&list(|one| one.room))?;
-            let off: Vec<f64> = over(by);
-            outside(false, level(&off)?, Some(-room), Some(room))
+            outside(false, level(&list(|one| one.found - one.expected))?, Some(-room), Some(room))
         }
     }
 }

@@ -4,17 +4,16 @@ use std::collections::BTreeSet;
 
 use super::causes;
 use super::consequence::consequence;
-use super::exchanged;
 use crate::check::evaluate::{flag, number, words};
 use crate::check::plan::{
-    Comparison, Exchanged, Expr, InputSide, Looks, Plausibility, Relation, Requirement, Test,
+    Comparison, Expr, InputSide, Looks, Plausibility, Relation, Requirement, Test,
 };
 use crate::graph::{Graph, InputNode, NodeId, PositionNodes};
 use crate::metrics::percentile::{Method, percentile};
 use crate::result::{Finding, FindingData, Occurrence, Reason};
 use crate::run::record::SectionWork;
 use crate::run::sections::{Known, needed};
-use crate::run::values::{NodeValues, Pooled, Print, SectionValues, Sides};
+use crate::run::values::{NodeValues, Pooled, Print, SectionValues, Shape, Sides};
 use crate::units::Dimension;
 
 /// A rule at a recorded position.
@@ -54,14 +53,21 @@ impl<'a> Questions<'a> {
                 }
             }
         }
+        // The likeliest cause first: the first finding says why a section is not used.
+        asked.sort_by_key(|asked| asked.rule.rank());
         Self(asked)
     }
 
-    /// Nodes whose values the rules need, of the track record (`track`) or of the other records.
-    pub fn wanted(&self, graph: &Graph, track: bool) -> BTreeSet<NodeId> {
+    /// Nodes whose values the rules need, of the records of a side or, without one, of the track
+    /// record.
+    pub fn wanted(&self, graph: &Graph, side: Option<InputSide>) -> BTreeSet<NodeId> {
+        let track = side.is_none();
         let mut wanted = BTreeSet::new();
         for Asked { rule, nodes, .. } in &self.0 {
-            let of_rule = nodes.inputs.iter().flat_map(InputNode::nodes);
+            let of_side = |input: &&InputNode| {
+                input.joint.is_some() || side.is_none_or(|side| input.side.resolve(side) == side)
+            };
+            let of_rule = nodes.inputs.iter().filter(of_side).flat_map(InputNode::nodes);
             wanted.extend(of_rule.filter(|&node| graph.nodes[node].track == track));
             if !track && matches!(rule.test, Test::Distinct(_) | Test::Exchanged(_)) {
                 wanted.extend(nodes.own);
@@ -79,16 +85,8 @@ pub fn look(
     values: &mut SectionValues,
 ) {
     let section = sides.section;
-    let mut channels: Vec<(&Plausibility, Exchanged, exchanged::Channels<'_>)> = Vec::new();
     for &Asked { rule, at, nodes, name } in &questions.0 {
         match &rule.test {
-            Test::Exchanged(test) => match (nodes.own, channels.last_mut()) {
-                (Some(own), Some((of, _, list))) if std::ptr::eq(*of, rule) => {
-                    list.push((name, own))
-                }
-                (Some(own), _) => channels.push((rule, *test, vec![(name, own)])),
-                (None, _) => {}
-            },
             Test::Require(requirement) => {
                 let others = questions.0.iter().filter(|other| std::ptr::eq(other.rule, rule));
                 let siblings =
@@ -97,20 +95,22 @@ pub fn look(
                 let position = Position { section, rule, at, requirement, siblings, name };
                 position.look(sides, nodes, track, values);
             }
-            Test::Distinct(_) => {
+            Test::Distinct(_) | Test::Exchanged(_) => {
                 for record in sides.simulated.iter().chain(sides.measured) {
                     if let Some(samples) = nodes.own.and_then(|own| record.found.samples(own).ok())
                     {
                         let words = section.campaign().record_in_words(record.which);
-                        let print = (record.which, words);
-                        values.prints.push(Print::of(&rule.name, name, print, &samples.values));
+                        let of = (record.which, words);
+                        if matches!(rule.test, Test::Distinct(_)) {
+                            values.prints.push(Print::of(&rule.name, name, of, &samples.values));
+                        } else {
+                            let signal = (samples.along.axis.as_slice(), samples.values.as_slice());
+                            values.shapes.extend(Shape::of((at[0], name), of, signal));
+                        }
                     }
                 }
             }
         }
-    }
-    for (rule, test, channels) in channels {
-        values.findings.extend(exchanged::find(rule, test, &channels, sides));
     }
 }
 

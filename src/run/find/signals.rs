@@ -8,6 +8,7 @@ use crate::check::plan::{InputSide, Plan, Side, StepSpec};
 use crate::data::RecordKind;
 use crate::graph::{Graph, InputNode, NodeId, Operation};
 use crate::metrics::percentile::Method;
+use crate::metrics::sampling::Traits;
 use crate::problem::{Problem, Problems};
 use crate::result::Reason;
 use crate::run::record::{NodeValue, Opened, Samples};
@@ -171,7 +172,7 @@ impl<'a> Signals<'a> {
             }
             let value = reducer.run(
                 &samples.along.axis[range.clone()],
-                &samples.values[range],
+                &Traits::of(&samples.values[range]),
                 self.method,
             );
             return value.filter(|value| value.is_finite()).ok_or(Reason::NoValue);
@@ -191,7 +192,7 @@ impl<'a> Signals<'a> {
         let over = node.inputs.get(1).map(|&over| processed(over)).transpose()?;
         let axis: &Arc<Vec<f64>> = over.as_ref().map_or(&samples.along.axis, |over| &over.values);
         reducer
-            .run(axis, &samples.values, self.method)
+            .run(axis, &Traits::of(&samples.values), self.method)
             .filter(|value| value.is_finite())
             .ok_or(Reason::NoValue)
     }

@@ -3,6 +3,8 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+use indexmap::IndexMap;
+
 use super::memo::{Computed, Keys, Memo};
 use super::opened::Opened;
 use super::signal::{Cutter, Samples, Signal, apply, arithmetic, each};
@@ -11,6 +13,7 @@ use crate::check::evaluate::number;
 use crate::check::plan::{Plan, StepSpec};
 use crate::graph::{Graph, NodeId, Operation};
 use crate::metrics::percentile::percentiles;
+use crate::metrics::sampling::Traits;
 use crate::result::{Reason, Subject};
 use crate::run::sections::{Extent, Known, chosen};
 
@@ -299,62 +302,54 @@ impl State<'_> {
         Ok(())
     }
 
-    /// Reducers of one level: percentiles of one signal share one sorting.
+    /// Reducers of one level: those of one signal share what they are computed from.
     fn reducers(&mut self, here: &[NodeId]) -> Result<(), Reason> {
-        let mut sorted: Vec<(NodeId, Vec<(NodeId, f64)>)> = Vec::new();
+        let mut by_input: IndexMap<NodeId, Vec<(NodeId, Reducer)>> = IndexMap::new();
         for &id in here {
             let node = &self.graph.nodes[id];
-            let Operation::Reduce(reducer) = &node.operation else { continue };
-            if self.without_input(id) {
-                continue;
-            }
-            let percent = match reducer {
-                Reducer::Percentile(percent) => *percent,
-                Reducer::Named(_) => {
-                    let samples = self.samples(node.inputs[0])?;
-                    let over = node.inputs.get(1).map(|&over| self.samples(over)).transpose()?;
-                    let axis = over.as_ref().map_or(&samples.along.axis, |over| &over.values);
-                    let value = reducer
-                        .run(axis, &samples.values, self.plan.sections.percentiles)
-                        .filter(|value| value.is_finite());
-                    match value {
-                        Some(value) => {
-                            self.found.push((id, NodeValue::Number(value, samples.values.len())))
-                        }
-                        None => {
-                            self.failed[id] = Some(Reason::ReducerUndefined {
-                                reducer: reducer.in_words(),
-                                samples: samples.values.len(),
-                            });
-                        }
-                    }
-                    continue;
-                }
-            };
-            match sorted.iter_mut().find(|(input, _)| *input == node.inputs[0]) {
-                Some((_, members)) => members.push((id, percent)),
-                None => sorted.push((node.inputs[0], vec![(id, percent)])),
+            if let Operation::Reduce(reducer) = node.operation
+                && !self.without_input(id)
+            {
+                by_input.entry(node.inputs[0]).or_default().push((id, reducer));
             }
         }
-        for (input, members) in sorted {
+        for (input, members) in by_input {
             let samples = self.samples(input)?;
-            let percents: Vec<f64> = members.iter().map(|(_, percent)| *percent).collect();
-            let values =
-                match percentiles(&samples.values, &percents, self.plan.sections.percentiles) {
-                    Ok(values) => values,
-                    Err(error) => {
-                        for (id, _) in &members {
-                            self.failed[*id] = Some(Reason::method(error));
-                        }
-                        continue;
+            let traits = Traits::of(&samples.values);
+            let method = self.plan.sections.percentiles;
+            let mut percents: Vec<(NodeId, f64)> = Vec::new();
+            for (id, reducer) in members {
+                if let Reducer::Percentile(percent) = reducer {
+                    percents.push((id, percent));
+                    continue;
+                }
+                let over = self.graph.nodes[id].inputs.get(1);
+                let over = over.map(|&over| self.samples(over)).transpose()?;
+                let axis = over.as_ref().map_or(&samples.along.axis, |over| &over.values);
+                let value = reducer.run(axis, &traits, method).filter(|value| value.is_finite());
+                match value {
+                    Some(value) => self.found.push((id, NodeValue::Number(value, traits.len()))),
+                    None => {
+                        let (reducer, samples) = (reducer.in_words(), traits.len());
+                        self.failed[id] = Some(Reason::ReducerUndefined { reducer, samples });
                     }
-                };
-            self.found.extend(
-                members
-                    .iter()
-                    .zip(values)
-                    .map(|((id, _), value)| (*id, NodeValue::Number(value, samples.values.len()))),
-            );
+                }
+            }
+            let wanted: Vec<f64> = percents.iter().map(|(_, percent)| *percent).collect();
+            match percentiles(&traits, &wanted, method) {
+                Ok(values) => {
+                    let numbers = percents
+                        .iter()
+                        .zip(values)
+                        .map(|((id, _), value)| (*id, NodeValue::Number(value, traits.len())));
+                    self.found.extend(numbers);
+                }
+                Err(error) => {
+                    for (id, _) in percents {
+                        self.failed[id] = Some(Reason::method(&error));
+                    }
+                }
+            }
         }
         Ok(())
     }

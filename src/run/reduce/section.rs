@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use crate::check::evaluate::flag;
-use crate::check::plan::{Evaluation, Expr, Quantity, Side};
+use crate::check::plan::{Evaluation, Expr, InputSide, Quantity, Side};
 use crate::data::RecordKind;
 use crate::graph::{InputNode, NodeId, SignalNodes};
 use crate::result::{Reason, Subject};
@@ -203,7 +203,11 @@ fn wanted(
     shifts: &Shifts<'_>,
     side: Side,
 ) -> BTreeSet<NodeId> {
-    let mut wanted = questions.wanted(work.graph, false);
+    let of_questions = match side {
+        Side::Simulated => InputSide::Simulated,
+        Side::Measured => InputSide::Measured,
+    };
+    let mut wanted = questions.wanted(work.graph, Some(of_questions));
     of_quantities(work, active, |evaluation| evaluation.reads(side), &mut wanted);
     let of_checks = work.graph.checks.iter().flatten().flat_map(InputNode::nodes);
     wanted.extend(of_checks.filter(|&node| !work.graph.nodes[node].track));

@@ -1,7 +1,7 @@
 //! Both sides of a section at common points, and values of expressions over their samples.
 
 use std::borrow::Cow;
-use std::cell::RefCell;
+use std::cell::{OnceCell, RefCell};
 use std::ops::Range;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -11,6 +11,7 @@ use crate::check::evaluate::number;
 use crate::check::plan::{AxisOperation, Expr, Kind, Side};
 use crate::metrics::percentile::Method;
 use crate::metrics::resample::{self, Located};
+use crate::metrics::sampling::Traits;
 use crate::result::Reason;
 use crate::run::record::{Along, Samples, Signal, apply, arithmetic, each};
 use crate::run::sections::{Extent, Known};
@@ -37,7 +38,11 @@ enum Onto {
 pub struct Meetings {
     met: RefCell<Vec<Met>>,
     sorted: RefCell<Vec<Sorted>>,
+    shifts: RefCell<Vec<Shifted>>,
 }
+
+/// Two signals, and the shift at which they agree best, once it was looked for.
+type Shifted = (Arc<Vec<f64>>, Arc<Vec<f64>>, Rc<OnceCell<isize>>);
 
 /// The values of a signal that a meeting has of one side, sorted.
 #[derive(Debug)]
@@ -75,6 +80,20 @@ impl Meetings {
         let found = Meeting::of(s, m, extent, shift).map(Rc::new);
         all.push(Met { of: (Arc::clone(s), Arc::clone(m), shift.to_bits()), found: found.clone() });
         found
+    }
+
+    /// Where metrics keep the shift at which two signals agree best.
+    pub fn best_shift(&self, (simulated, measured): (&Samples, &Samples)) -> Rc<OnceCell<isize>> {
+        let mut all = self.shifts.borrow_mut();
+        let (s, m) = (&simulated.values, &measured.values);
+        if let Some((.., shift)) =
+            all.iter().find(|(of, with, _)| Arc::ptr_eq(of, s) && Arc::ptr_eq(with, m))
+        {
+            return Rc::clone(shift);
+        }
+        let shift = Rc::new(OnceCell::new());
+        all.push((Arc::clone(s), Arc::clone(m), Rc::clone(&shift)));
+        shift
     }
 
     /// The values that a meeting has of a signal, sorted: several metrics take their distribution,
@@ -176,8 +195,8 @@ impl Common {
 /// # Errors
 /// It is not defined for these samples.
 fn number_of(reducer: Reducer, samples: &Samples, method: Method) -> Result<f64, Reason> {
-    let value =
-        reducer.run(&samples.along.axis, &samples.values, method).filter(|value| value.is_finite());
+    let value = reducer.run(&samples.along.axis, &Traits::of(&samples.values), method);
+    let value = value.filter(|value| value.is_finite());
     let samples = samples.values.len();
     value.ok_or_else(|| Reason::ReducerUndefined { reducer: reducer.in_words(), samples })
 }

@@ -2,6 +2,7 @@
 //!
 //! | file | content |
 //! |---|---|
+//! | `shape` | a signal in coarse steps, which is compared with those of other sections |
 //! | `print` | marks of a signal, by which copies are found |
 //! | `common` | both sides at common points |
 //! | `one_record` | one record of a section, and whether it is long enough for slow filters |
@@ -11,6 +12,7 @@
 mod common;
 mod one_record;
 pub mod print;
+mod shape;
 mod sides;
 pub mod synchronisation;
 
@@ -23,6 +25,7 @@ use crate::run::sections::Extent;
 pub use common::Meetings;
 pub use one_record::{NodeValues, RecordOfSide, margin_note};
 pub use print::Print;
+pub use shape::Shape;
 pub use sides::{Original, Sides, Two};
 
 /// One value of a section.
@@ -69,6 +72,8 @@ pub struct SectionValues {
     pub findings: Vec<Finding>,
     /// Marks of the signals that are compared with others to find copies.
     pub prints: Vec<Print>,
+    /// Signals that are compared with those of other channels and sections.
+    pub shapes: Vec<Shape>,
     /// What requirements of all sections together need.
     pub pooled: Vec<Pooled>,
     pub files: Vec<FileHash>,

@@ -340,14 +340,16 @@ impl Two<'_> {
                 measured.values.as_slice(),
             ),
         };
-        let pair = Pair { axis, simulated: &simulated, measured, rate, band: None, over };
+        let shift = self.sides.meetings.best_shift(of);
+        let (simulated, best_shift) = (simulated.as_ref(), shift.as_ref());
+        let pair = Pair { axis, simulated, measured, rate, band: None, over, best_shift };
         let run = |pair: &Pair<'_>| metric.run(pair).map_err(Reason::method);
         let Some(points) = metric.points() else { return Ok((run(&pair)?, measured.len())) };
         let quantiles = |side: Side, samples: &Samples, values: &[f64]| {
             let sorted = self.sides.meetings.sorted((samples, meeting.as_ref(), side), values);
             pair::quantiles_of_sorted(&sorted, points).map_err(Reason::method)
         };
-        let of_simulated = quantiles(Side::Simulated, of.0, &simulated)?;
+        let of_simulated = quantiles(Side::Simulated, of.0, simulated)?;
         let of_measured = quantiles(Side::Measured, of.1, measured)?;
         Ok((
             run(&Pair { simulated: &of_simulated, measured: &of_measured, ..pair })?,

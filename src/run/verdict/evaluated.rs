@@ -6,7 +6,7 @@ use crate::problem::Problems;
 use crate::result::study::Reduction;
 use crate::result::{Consequence, DomainResult, FileHash, Finding, Reason, Remark, VehicleValue};
 use crate::run::data_rules::{
-    changed, copies, nothing_usable, over_sections, stop_on_fault, take_over,
+    changed, copies, matching, nothing_usable, over_sections, stop_on_fault, take_over,
 };
 use crate::run::describe::domain;
 use crate::run::estimate::{Group, Rows, used};
@@ -68,7 +68,8 @@ impl Basis {
             .then_some(Reason::ValuesOfSectionsMissing { sections: missing, total: units.len() });
         let values: Vec<SectionValues> =
             values.into_iter().map(Option::unwrap_or_default).collect();
-        let copies = copies::find(plan, &units, &values);
+        let mut copies = copies::find(plan, &units, &values);
+        copies.extend(matching::find(plan, &units, &values));
         take_over(plan, &mut units, &values, &copies, &mut notes)?;
         stop_on_fault(plan, &units, &values)?;
         let pooled = over_sections::find(plan, &units, &values);

@@ -146,6 +146,7 @@ fn not_plausible(plan: &Plan, findings: &[Finding], complete: bool) -> Vec<Reaso
         let sections = |consequence: Consequence| {
             let own = findings
                 .iter()
+                .flat_map(Finding::with_explained)
                 .filter(|finding| finding.code == rule.name && finding.consequence == consequence);
             let places = own.flat_map(Finding::places);
             places.map(|place| place.section.as_deref()).collect::<BTreeSet<_>>().len()

@@ -232,6 +232,7 @@ fn barred(units: &[Unit], findings: &[Finding]) -> Vec<String> {
     let says = |unit: &Unit| {
         let mut places = findings
             .iter()
+            .flat_map(Finding::with_explained)
             .filter(|finding| finding.consequence == Consequence::NotUsed)
             .flat_map(Finding::places);
         let place = places.find(|place| place.section.as_ref() == Some(&unit.name))?;
