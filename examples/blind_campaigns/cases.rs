@@ -4,7 +4,7 @@
 
 use fishplate::model::{TrackTable, Vehicle};
 
-use crate::vehicles::{COACH, Design, RAILCAR, WAGON};
+use super::vehicles::{COACH, Design, RAILCAR, WAGON};
 
 /// A set of campaigns.
 pub struct Set {

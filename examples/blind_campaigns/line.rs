@@ -3,7 +3,7 @@
 use fishplate::effects::Gauss;
 use fishplate::model::TrackTable;
 
-use crate::vehicles::Design;
+use super::vehicles::Design;
 
 /// Distance of the points of a track table in m.
 const STEP: f64 = 0.25;
@@ -100,7 +100,7 @@ pub fn stretches(design: &Design, per_zone: usize, random: &mut Gauss) -> Vec<St
 }
 
 /// Length of a transition in m.
-fn ramp(cant: f64) -> f64 {
+pub fn ramp(cant: f64) -> f64 {
     (0.8 * cant).max(40.0)
 }
 

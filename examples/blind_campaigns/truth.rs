@@ -5,8 +5,8 @@ use fishplate::model::{
     CHANNELS, Profile, ProfileTable, SAMPLING_RATE, Setup, TrackTable, Vehicle, Window, simulate,
 };
 
-use crate::cases::Outside;
-use crate::line::Stretch;
+use super::cases::Outside;
+use super::line::Stretch;
 
 /// Declared tolerances: one standard deviation each.
 pub struct Declared {
@@ -313,7 +313,8 @@ pub struct Making<'a> {
     pub outside: Option<Outside>,
 }
 
-fn kind(channel: &str) -> usize {
+/// Index of a channel in [`Declared::offset`] and [`Declared::noise`].
+pub fn kind(channel: &str) -> usize {
     ["Y", "Q"].iter().position(|letter| channel.starts_with(letter)).unwrap_or(2)
 }
 

@@ -12,7 +12,7 @@ pub struct Design {
     /// Range of its speeds in km/h, and its largest cant deficiency in mm.
     pub speeds: (f64, f64),
     pub deficiency: f64,
-    differs: &'static [(&'static str, f64)],
+    pub differs: &'static [(&'static str, f64)],
 }
 
 pub const COACH: Design = Design {

@@ -14,11 +14,11 @@ use fishplate::simulate::{Fact, Plan, Section, record_file};
 use fishplate::source::Source;
 use fishplate::units::Unit;
 
-use crate::cases::{Case, Set};
-use crate::hidden::{catalogue, chosen, told};
-use crate::line::{Irregularities, Stretch, measured, stretches};
-use crate::truth::{DECLARED, Making, World, noise};
-use crate::vehicles::example;
+use super::cases::{Case, Set};
+use super::hidden::{catalogue, chosen, told};
+use super::line::{Irregularities, Stretch, measured, stretches};
+use super::truth::{DECLARED, Making, World, noise};
+use super::vehicles::{Design, example};
 
 /// Writes a campaign of a set.
 ///
@@ -97,8 +97,8 @@ fn make(out: &Path, set: &Set, case: &Case, draw: u64) -> Result<(), String> {
     add("sections.csv", table.as_bytes())?;
     add("profile.csv", copied("profile.csv")?.as_bytes())?;
     add("profile_worn.csv", copied("profile_worn.csv")?.as_bytes())?;
-    add("vehicle.yaml", vehicle_text(case, &nominal).as_bytes())?;
-    add("campaign.yaml", campaign_text(&name, &nominal).as_bytes())?;
+    add("vehicle.yaml", vehicle_text(case.design, &nominal).as_bytes())?;
+    add("campaign.yaml", campaign_text(&name, &nominal, SAMPLING_RATE).as_bytes())?;
     add("truth.json", truth_text(case, &effects).as_bytes())?;
     outputs.commit().map_err(|problem| problem.says)
 }
@@ -121,7 +121,7 @@ fn drawn(catalogue: &Catalogue, case: &Case, random: &mut Gauss) -> Result<Vec<A
 }
 
 /// The section, for the confinements of the catalogue.
-fn section(stretch: &Stretch) -> Section {
+pub fn section(stretch: &Stretch) -> Section {
     let fact = |name: &str, text: String| Fact { name: name.to_string(), text, unit: None };
     let facts = vec![
         fact("zone", stretch.zone.to_string()),
@@ -138,7 +138,7 @@ fn section(stretch: &Stretch) -> Section {
 }
 
 /// The record of the simulation, without any effect, on the measured track.
-fn simulated(
+pub fn simulated(
     vehicle: &Vehicle,
     table: &ProfileTable,
     track: &TrackTable,
@@ -160,11 +160,11 @@ fn simulated(
     })
 }
 
-fn copied(name: &str) -> Result<String, String> {
+pub fn copied(name: &str) -> Result<String, String> {
     std::fs::read_to_string(example().join(name)).map_err(|error| format!("{name}: {error}"))
 }
 
-fn profile(name: &str) -> Result<ProfileTable, String> {
+pub fn profile(name: &str) -> Result<ProfileTable, String> {
     let text = copied(name)?;
     let rows: Vec<Vec<f64>> = text
         .lines()
@@ -180,7 +180,7 @@ fn profile(name: &str) -> Result<ProfileTable, String> {
     })
 }
 
-fn row(stretch: &Stretch) -> String {
+pub fn row(stretch: &Stretch) -> String {
     let Stretch { name, zone, start, end, cant, deficiency, speed, .. } = stretch;
     let radius = stretch.radius.map_or(String::new(), |radius| format!("{radius}"));
     format!(
@@ -189,7 +189,7 @@ fn row(stretch: &Stretch) -> String {
     )
 }
 
-fn track_text(track: &TrackTable) -> String {
+pub fn track_text(track: &TrackTable) -> String {
     let mut text = String::from(
         "distance [m],curvature [1/m],cant [mm],alignment [mm],level [mm],cross level [mm],gauge [mm]\n",
     );
@@ -205,8 +205,7 @@ fn track_text(track: &TrackTable) -> String {
 }
 
 /// All parameters of the model that differ from neutral, nested as in a vehicle file.
-fn vehicle_text(case: &Case, vehicle: &Vehicle) -> String {
-    let design = case.design;
+pub fn vehicle_text(design: &Design, vehicle: &Vehicle) -> String {
     let mut text = format!(
         "name: {}\ncategory: {}\nrunning_gear: bogies\nsecondary_suspension: {}\nstatic_wheel_load: {:.4} kN\n",
         design.name,
@@ -238,10 +237,10 @@ fn vehicle_text(case: &Case, vehicle: &Vehicle) -> String {
     text
 }
 
-fn campaign_text(name: &str, vehicle: &Vehicle) -> String {
+pub fn campaign_text(name: &str, vehicle: &Vehicle, rate: f64) -> String {
     format!(
         "name: {name}\nvehicle: vehicle.yaml\nsections: sections.csv\nmeasurement: measurement\nsimulation: simulation\ntrack: track\n\
-         sampling_rate [Hz]: 200\nassumed_friction [-]: {}\nsimulation_ran_on: measured track\ndeclared_tolerances:\n{}",
+         sampling_rate [Hz]: {rate}\nassumed_friction [-]: {}\nsimulation_ran_on: measured track\ndeclared_tolerances:\n{}",
         vehicle.friction,
         DECLARED.lines()
     )

@@ -8,12 +8,16 @@ mod common {
 }
 
 // Faults of campaigns, put in by the example.
-#[path = "../../examples/plausibility_faults/faults.rs"]
-mod faults;
-#[path = "../../examples/plausibility_faults/folder.rs"]
-mod folder;
-#[path = "../../examples/plausibility_faults/score.rs"]
-mod score;
+#[allow(
+    dead_code,
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    clippy::cast_possible_wrap,
+    clippy::cast_sign_loss,
+    reason = "as in the example, of which a part is used"
+)]
+#[path = "../../examples/plausibility_faults/bench/mod.rs"]
+mod bench;
 
 mod campaign_faults;
 mod campaign_vehicle;

@@ -5,17 +5,16 @@ use crate::common::texts::{text, texts};
 use std::fs;
 use std::path::Path;
 
+use crate::bench::evaluate::{self, Outcome, Program};
+use crate::bench::folder::{Folder, Side};
+use crate::bench::{self, variations};
 use crate::common::campaign::{certified, copy, tiny};
-use crate::faults;
-use crate::folder::{Folder, Side};
-use crate::score::{self, Outcome};
 use fishplate::result::{Certification, Consequence, Finding, Verdict};
-use rayon::prelude::*;
 
 const SOUND: &str = "examples/coach-good";
 
 fn done(path: &Path) -> Certification {
-    match score::certified(path) {
+    match evaluate::certified(path) {
         Outcome::Done(found) => *found,
         Outcome::Refused(problems) => panic!("{}", problems.render(false)),
     }
@@ -54,15 +53,14 @@ fn nothing_is_told_of_the_sound_examples() {
     }
 }
 
-/// The bar of this project: nine in ten of the faults, by name of section and channel. The example
-/// `plausibility_faults` puts the same faults into campaigns of other vehicles.
+/// The fixed faults of the first round: nine in ten, by name of section and channel.
 #[test]
 fn faults_are_told_by_section_and_channel() {
-    let sound = Folder::read(Path::new(SOUND));
-    let scores: Vec<score::Score> =
-        faults::all().par_iter().map(|fault| score::score(&sound, fault)).collect();
+    let place = tempfile::tempdir().expect("a temporary folder");
+    let bases = bench::bases(&Program::Own, &[], &[], place.path()).expect("the examples");
+    let scores = bench::first_round(&Program::Own, &bases[0]);
     let missed: Vec<&str> =
-        scores.iter().filter(|score| !score.told).map(|score| score.fault).collect();
+        scores.iter().filter(|(_, score)| !score.told).map(|(name, _)| *name).collect();
     assert!(scores.len() >= 100, "{} faults", scores.len());
     assert!(10 * missed.len() <= scores.len(), "not told: {missed:?}");
     // What is wrong in every section must not be validated, whatever else is told.
@@ -77,11 +75,57 @@ fn faults_are_told_by_section_and_channel() {
     ];
     let validated: Vec<String> = scores
         .iter()
-        .filter(|score| score.validated && everywhere.iter().any(|part| score.fault.contains(part)))
-        .filter(|score| !score.fault.contains("a section") && !score.fault.contains("dead"))
-        .map(|score| format!("{}: {}", score.fault, score.says))
+        .filter(|(name, score)| {
+            score.validated() && everywhere.iter().any(|part| name.contains(part))
+        })
+        .filter(|(name, _)| !name.contains("a section") && !name.contains("dead"))
+        .map(|(name, score)| format!("{name}: {}", score.says))
         .collect();
     assert!(validated.is_empty(), "validated all the same: {validated:?}");
+}
+
+/// A share of the faults that the example `plausibility_faults` draws, in the campaigns of the
+/// examples: nine in ten are told, eight in ten with the right cause first.
+#[test]
+fn drawn_faults_are_told_with_their_cause() {
+    let place = tempfile::tempdir().expect("a temporary folder");
+    let bases = bench::bases(&Program::Own, &[], &[], place.path()).expect("the examples");
+    let cases = bench::faults(&Program::Own, &bases, (1, 4), "", &|_| {});
+    let told = cases.iter().filter(|case| case.score.told).count();
+    let first = cases.iter().filter(|case| case.score.first).count();
+    let missed: Vec<String> = cases
+        .iter()
+        .filter(|case| !case.score.first)
+        .map(|case| format!("{}: {}: {}", case.kind, case.says, case.score.says))
+        .collect();
+    assert!(cases.len() >= 20, "{} faults", cases.len());
+    assert!(10 * told >= 9 * cases.len(), "{told} of {} told: {missed:#?}", cases.len());
+    assert!(10 * first >= 8 * cases.len(), "{first} of {} first: {missed:#?}", cases.len());
+    let copied = |case: &&bench::Case| case.mechanism == 0 && bases[case.base].fails;
+    assert!(cases.iter().filter(copied).all(|case| !case.score.validated()), "{missed:#?}");
+}
+
+/// A share of the sound variations: rounding, short margins, wind, a load to one side.
+#[test]
+fn nothing_is_told_of_sound_variations() {
+    let place = tempfile::tempdir().expect("a temporary folder");
+    let bases = bench::bases(&Program::Own, &[], &[], place.path()).expect("the examples");
+    let all = variations::all(&["coach-good".into()], 1);
+    let some: Vec<_> = all
+        .into_iter()
+        .enumerate()
+        .filter(|(n, variation)| {
+            *n < 3
+                || ["Wagon: wind of 15 kN on both", "Railcar: load", "Coach: unmodelled friction"]
+                    .iter()
+                    .any(|part| variation.name.contains(part))
+        })
+        .map(|(_, variation)| variation)
+        .collect();
+    assert_eq!(some.len(), 6);
+    let quiet = bench::quiet(&Program::Own, &bases, &some, place.path()).expect("campaigns");
+    let wrongly: Vec<_> = quiet.iter().filter(|sound| !sound.wrongly.is_empty()).collect();
+    assert!(wrongly.is_empty(), "{wrongly:#?}");
 }
 
 #[test]

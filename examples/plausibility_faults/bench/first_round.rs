@@ -1,37 +1,35 @@
 //! Faults of kinds that occur in real campaigns, one at a time, and the expected finding.
 
-use crate::folder::{Folder, Side};
-
-/// The expected finding: one of these sections and one of these channels.
-pub struct Told {
-    /// Empty: of the campaign or of any section.
-    pub sections: Vec<String>,
-    /// The finding names one of them, as a channel or in its sentence; empty: any.
-    pub channels: &'static [&'static str],
-}
+use super::fault::{Told, own, texts};
+use super::folder::{Folder, SECTIONS, Side};
+use super::signal::{deviation, each, mean};
 
 pub struct Fault {
     pub name: &'static str,
-    pub put: Box<dyn Fn(&mut Folder) -> Told + Sync>,
+    pub put: Box<dyn Fn(&mut Folder) -> Told + Send + Sync>,
 }
 
 const G: f64 = 9.806_65;
 
-fn fault(name: &'static str, put: impl Fn(&mut Folder) -> Told + Sync + 'static) -> Fault {
+fn names(sections: Vec<String>, channels: &[&str]) -> Told {
+    Told { sections, channels: texts(channels) }
+}
+
+fn fault(name: &'static str, put: impl Fn(&mut Folder) -> Told + Send + Sync + 'static) -> Fault {
     Fault { name, put: Box::new(put) }
 }
 
 fn of_vehicle(
     name: &'static str,
     key: &'static str,
-    value: impl Fn(f64) -> String + Sync + 'static,
+    value: impl Fn(f64) -> String + Send + Sync + 'static,
 ) -> Fault {
     fault(name, move |folder| {
         let number = |old: &str| {
             old.split_whitespace().next().and_then(|first| first.parse().ok()).unwrap_or(0.0)
         };
         folder.vehicle(key, |old| value(number(old)));
-        Told { sections: Vec::new(), channels: &[] }
+        names(Vec::new(), &[])
     })
 }
 
@@ -48,7 +46,7 @@ fn scaled(
         folder.channels(side, &sections, begins, |values| {
             values.iter().map(|value| value * factor).collect()
         });
-        Told { sections: Vec::new(), channels: told }
+        names(Vec::new(), told)
     })
 }
 
@@ -58,7 +56,7 @@ fn in_section(
     side: Side,
     zone: &'static str,
     channel: &'static str,
-    change: impl Fn(&[f64]) -> Vec<f64> + Sync + 'static,
+    change: impl Fn(&[f64]) -> Vec<f64> + Send + Sync + 'static,
 ) -> Fault {
     fault(name, move |folder| {
         let section = folder.sections(zone)[1].clone();
@@ -67,63 +65,25 @@ fn in_section(
     })
 }
 
-/// Names under which a channel, or a sum that contains it, is reported.
-fn own(channel: &'static str) -> &'static [&'static str] {
-    match channel {
-        "Y_1R" => &["Y_1R", "YQ_1R"],
-        "Y_1L" => &["Y_1L", "YQ_1L"],
-        "Y_3R" => &["Y_3R", "YQ_3R"],
-        "Y_3L" => &["Y_3L", "YQ_3L"],
-        "Q_1R" => &["Q_1R", "SigmaQ_1", "DeltaQ_1", "YQ_1R"],
-        "Q_1L" => &["Q_1L", "SigmaQ_1", "DeltaQ_1", "YQ_1L"],
-        "Q_3R" => &["Q_3R", "SigmaQ_3", "DeltaQ_3", "YQ_3R"],
-        "Q_3L" => &["Q_3L", "SigmaQ_3", "DeltaQ_3", "YQ_3L"],
-        "ay_I" => &["ay_I"],
-        "ay_II" => &["ay_II"],
-        "az_I" => &["az_I"],
-        "az_II" => &["az_II"],
-        _ => &[],
-    }
-}
-
-fn deviation(values: &[f64]) -> f64 {
-    let mean = values.iter().sum::<f64>() / values.len() as f64;
-    (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt()
-}
-
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
-}
-
-fn held_from(from: f64, to: f64) -> impl Fn(&[f64]) -> Vec<f64> + Sync {
+fn held_from(from: f64, to: f64) -> impl Fn(&[f64]) -> Vec<f64> + Send + Sync {
     move |values| {
         let (a, b) = ((from * values.len() as f64) as usize, (to * values.len() as f64) as usize);
-        values
-            .iter()
-            .enumerate()
-            .map(|(at, value)| if (a..b).contains(&at) { values[a] } else { *value })
-            .collect()
+        each(values, |at, value| if (a..b).contains(&at) { values[a] } else { value })
     }
 }
 
-fn drifting(by: f64) -> impl Fn(&[f64]) -> Vec<f64> + Sync {
-    move |values| {
-        values
-            .iter()
-            .enumerate()
-            .map(|(at, value)| value + by * at as f64 / values.len() as f64)
-            .collect()
-    }
+fn drifting(by: f64) -> impl Fn(&[f64]) -> Vec<f64> + Send + Sync {
+    move |values| each(values, |at, value| value + by * at as f64 / values.len() as f64)
 }
 
-fn clipped(at: f64) -> impl Fn(&[f64]) -> Vec<f64> + Sync {
+fn clipped(at: f64) -> impl Fn(&[f64]) -> Vec<f64> + Send + Sync {
     move |values| {
         let (mean, most) = (mean(values), at * deviation(values));
         values.iter().map(|value| mean + (value - mean).clamp(-most, most)).collect()
     }
 }
 
-fn coarse(step: f64) -> impl Fn(&[f64]) -> Vec<f64> + Sync {
+fn coarse(step: f64) -> impl Fn(&[f64]) -> Vec<f64> + Send + Sync {
     move |values| values.iter().map(|value| (value / step).round() * step).collect()
 }
 
@@ -146,12 +106,8 @@ fn hiss(values: &[f64]) -> Vec<f64> {
 fn copied(folder: &mut Folder, side: Side, sections: &[String], from: &str, to: &str) {
     for kind in side.folders() {
         for section in sections {
-            let table = folder.tables.get_mut(&format!("{kind}/{section}.csv")).expect("a record");
-            let (from, to) =
-                (table.column(from).expect("a channel"), table.column(to).expect("a channel"));
-            for row in &mut table.rows {
-                row[to] = row[from].clone();
-            }
+            let record = folder.record_mut(&format!("{kind}/{section}.csv"));
+            record.set(to, record.values(from).to_vec());
         }
     }
 }
@@ -159,9 +115,10 @@ fn copied(folder: &mut Folder, side: Side, sections: &[String], from: &str, to: 
 fn exchanged(folder: &mut Folder, side: Side, sections: &[String], a: &str, b: &str) {
     for kind in side.folders() {
         for section in sections {
-            let table = folder.tables.get_mut(&format!("{kind}/{section}.csv")).expect("a record");
-            let (a, b) = (table.column(a).expect("a channel"), table.column(b).expect("a channel"));
-            table.rows.iter_mut().for_each(|row| row.swap(a, b));
+            let record = folder.record_mut(&format!("{kind}/{section}.csv"));
+            let (a, b) =
+                (record.column(a).expect("a channel"), record.column(b).expect("a channel"));
+            record.columns.swap(a, b);
         }
     }
 }
@@ -170,12 +127,12 @@ fn along(
     name: &'static str,
     side: Side,
     column: &'static str,
-    change: impl Fn(&[f64]) -> Vec<f64> + Sync + 'static,
+    change: impl Fn(&[f64]) -> Vec<f64> + Send + Sync + 'static,
 ) -> Fault {
     fault(name, move |folder| {
         let sections = folder.sections("");
         folder.channels(side, &sections, &[column], &change);
-        Told { sections, channels: &[] }
+        names(sections, &[])
     })
 }
 
@@ -185,14 +142,14 @@ fn mirrored(name: &'static str, side: Side) -> Fault {
         let sections = folder.sections("");
         let own = ["Y", "Q", "a"];
         folder.channels(side, &sections, &own, |values| values.iter().rev().copied().collect());
-        Told { sections, channels: &[] }
+        names(sections, &[])
     })
 }
 
 /// Replaces a record by another.
 fn record(folder: &mut Folder, from: &str, to: &str) {
-    let copy = folder.tables[from].clone();
-    folder.tables.insert(to.to_string(), copy);
+    let copy = folder.record(from).clone();
+    folder.put(to, copy);
 }
 
 /// A cell of the table of sections in the second section of a zone.
@@ -200,13 +157,13 @@ fn in_table(
     name: &'static str,
     zone: &'static str,
     column: &'static str,
-    change: impl Fn(&str) -> String + Sync + 'static,
+    change: impl Fn(&str) -> String + Send + Sync + 'static,
 ) -> Fault {
     fault(name, move |folder| {
         let section = folder.sections(zone)[1].clone();
         let cell = folder.cell(&section, column);
         *cell = change(cell);
-        Told { sections: vec![section], channels: &[] }
+        names(vec![section], &[])
     })
 }
 
@@ -250,7 +207,7 @@ fn vehicle() -> Vec<Fault> {
     let word = |name, key: &'static str, value: &'static str| {
         fault(name, move |folder: &mut Folder| {
             folder.vehicle(key, |_| value.into());
-            Told { sections: Vec::new(), channels: &[] }
+            names(Vec::new(), &[])
         })
     };
     all.push(word("single axles for bogies", "running_gear", "single_axles"));
@@ -307,43 +264,33 @@ fn signs() -> Vec<Fault> {
         fault("left and right vertical forces exchanged on both sides", |folder| {
             let sections = folder.sections("");
             for wheelset in 1..=4 {
-                exchanged(
-                    folder,
-                    Side::Both,
-                    &sections,
-                    &format!("Q_{wheelset}R"),
-                    &format!("Q_{wheelset}L"),
-                );
+                let [right, left] = ["R", "L"].map(|side| format!("Q_{wheelset}{side}"));
+                exchanged(folder, Side::Both, &sections, &right, &left);
             }
-            Told { sections: Vec::new(), channels: OF_Q }
+            names(Vec::new(), OF_Q)
         }),
         fault("guiding forces of two wheelsets exchanged in the measurement", |folder| {
             let sections = folder.sections("");
             exchanged(folder, Side::Measurement, &sections, "Y_1R", "Y_3L");
-            Told { sections: Vec::new(), channels: &["Y_1R", "Y_3L"] }
+            names(Vec::new(), &["Y_1R", "Y_3L"])
         }),
         fault("accelerations of both ends exchanged in the measurement", |folder| {
             let sections = folder.sections("");
             exchanged(folder, Side::Measurement, &sections, "az_I", "az_II");
-            Told { sections: Vec::new(), channels: &["az_I", "az_II"] }
+            names(Vec::new(), &["az_I", "az_II"])
         }),
         fault("noise in place of the acceleration az_I in a section", |folder| {
             let sections = folder.sections("").into_iter().take(1).collect::<Vec<_>>();
             folder.channels(Side::Measurement, &sections, &["az_I"], hiss);
-            Told { sections, channels: &["az_I"] }
+            names(sections, &["az_I"])
         }),
         fault("left and right guiding forces exchanged on both sides", |folder| {
             let sections = folder.sections("");
             for wheelset in 1..=4 {
-                exchanged(
-                    folder,
-                    Side::Both,
-                    &sections,
-                    &format!("Y_{wheelset}R"),
-                    &format!("Y_{wheelset}L"),
-                );
+                let [right, left] = ["R", "L"].map(|side| format!("Y_{wheelset}{side}"));
+                exchanged(folder, Side::Both, &sections, &right, &left);
             }
-            Told { sections: Vec::new(), channels: OF_Y }
+            names(Vec::new(), OF_Y)
         }),
     ]
 }
@@ -357,7 +304,7 @@ fn channels() -> Vec<Fault> {
             folder.channels(Side::Both, &sections, &["Y", "Q", "a"], |values| {
                 vec![1.0; values.len()]
             });
-            Told { sections, channels: &["Y_1R", "Q_1R"] }
+            names(sections, &["Y_1R", "Q_1R"])
         }),
         in_section("Y_1R measured dead at 0", one, "4", "Y_1R", constant(0.0)),
         in_section("Q_3L measured dead at 54 kN", one, "2", "Q_3L", constant(54.0)),
@@ -409,7 +356,7 @@ fn copies() -> Vec<Fault> {
             fault(name, move |folder: &mut Folder| {
                 let sections = folder.sections("");
                 copied(folder, side, &sections, from, to);
-                Told { sections, channels: told }
+                names(sections, told)
             })
         };
     let section = |name, side: Side| {
@@ -426,7 +373,7 @@ fn copies() -> Vec<Fault> {
                 let value = folder.cell(&all[0], column).clone();
                 *folder.cell(&all[1], column) = value;
             }
-            Told { sections: vec![all[1].clone()], channels: &["Y_1R"] }
+            names(vec![all[1].clone()], &["Y_1R"])
         })
     };
     vec![
@@ -445,58 +392,37 @@ fn copies() -> Vec<Fault> {
                     &format!("measurement/{section}.csv"),
                 );
             }
-            Told { sections, channels: &["Y_1R"] }
+            names(sections, &["Y_1R"])
         }),
         fault("Q_1R measured is a copy of the simulation in a section", |folder| {
             let section = folder.sections("3")[1].clone();
-            let simulated = folder.tables[&format!("simulation/{section}.csv")].clone();
-            let values = simulated.numbers(simulated.column("Q_1R").expect("a channel"));
-            let measured =
-                folder.tables.get_mut(&format!("measurement/{section}.csv")).expect("a record");
-            let column = measured.column("Q_1R").expect("a channel");
-            measured.set(column, &values);
-            Told { sections: vec![section], channels: &["Q_1R"] }
+            let values =
+                folder.record(&format!("simulation/{section}.csv")).values("Q_1R").to_vec();
+            folder.record_mut(&format!("measurement/{section}.csv")).set("Q_1R", values);
+            names(vec![section], &["Q_1R"])
         }),
         fault("one section three times in its zone", |folder| {
             let all = folder.sections("2");
-            for other in &all[1..3] {
-                for kind in ["simulation", "measurement", "track"] {
-                    record(
-                        folder,
-                        &format!("{kind}/{}.csv", all[0]),
-                        &format!("{kind}/{other}.csv"),
-                    );
-                }
-                let columns = folder.tables["sections.csv"].header.len();
-                let first = folder.tables["sections.csv"]
-                    .rows
-                    .iter()
-                    .find(|row| row[0] == all[0])
-                    .expect("a section")
-                    .clone();
-                let table = folder.tables.get_mut("sections.csv").expect("a table");
-                let row = table.rows.iter_mut().find(|row| row[0] == *other).expect("a section");
-                row[1..columns].clone_from_slice(&first[1..columns]);
-            }
-            Told { sections: all[1..3].to_vec(), channels: &["Y_1R"] }
+            all[1..3].iter().for_each(|other| same(folder, &all[0], other));
+            names(all[1..3].to_vec(), &["Y_1R"])
         }),
-        fault("two sections overlap by half", |folder| {
+        fault("a section is another one under its name", |folder| {
             let all = folder.sections("1");
-            for kind in ["simulation", "measurement", "track"] {
-                record(
-                    folder,
-                    &format!("{kind}/{}.csv", all[0]),
-                    &format!("{kind}/{}.csv", all[1]),
-                );
-            }
-            let columns = folder.tables["sections.csv"].header.len();
-            let table = folder.tables.get_mut("sections.csv").expect("a table");
-            let first = table.rows.iter().find(|row| row[0] == all[0]).expect("a section").clone();
-            let row = table.rows.iter_mut().find(|row| row[0] == all[1]).expect("a section");
-            row[1..columns].clone_from_slice(&first[1..columns]);
-            Told { sections: vec![all[1].clone()], channels: &["Y_1R"] }
+            same(folder, &all[0], &all[1]);
+            names(vec![all[1].clone()], &["Y_1R"])
         }),
     ]
+}
+
+/// The records and the row of a section under the name of another.
+fn same(folder: &mut Folder, from: &str, to: &str) {
+    for kind in ["simulation", "measurement", "track"] {
+        record(folder, &format!("{kind}/{from}.csv"), &format!("{kind}/{to}.csv"));
+    }
+    let table = folder.tables.get_mut(SECTIONS).expect("a table");
+    let first = table.rows.iter().find(|row| row[0] == from).expect("a section").clone();
+    let row = table.rows.iter_mut().find(|row| row[0] == to).expect("a section");
+    row[1..].clone_from_slice(&first[1..]);
 }
 
 fn tables() -> Vec<Fault> {
@@ -523,13 +449,13 @@ fn tables() -> Vec<Fault> {
             let (curve, straight) =
                 (folder.sections("4")[1].clone(), folder.sections("1")[1].clone());
             record(folder, &format!("track/{straight}.csv"), &format!("track/{curve}.csv"));
-            Told { sections: vec![curve], channels: &[] }
+            names(vec![curve], &[])
         }),
         fault("track file of a curve for a straight section", |folder| {
             let (curve, straight) =
                 (folder.sections("4")[1].clone(), folder.sections("1")[1].clone());
             record(folder, &format!("track/{curve}.csv"), &format!("track/{straight}.csv"));
-            Told { sections: vec![straight], channels: &[] }
+            names(vec![straight], &[])
         }),
     ]
 }
