@@ -179,6 +179,8 @@ pub fn piled_up(values: &[f64]) -> Option<f64> {
     const MORE: f64 = 2.0;
     /// ... and one sample, since every signal has a largest value.
     const LEAST: f64 = 1.0;
+    /// Fewer samples than this beyond them are chance, in a short section as in a long one.
+    const FEWEST: f64 = 3.0;
     let (least, greatest) = ends(values)?;
     let step = resolution(values)?;
     let width = step.max(WIDTH * standard_deviation(values, Divisor::Population)?);
@@ -198,7 +200,8 @@ pub fn piled_up(values: &[f64]) -> Option<f64> {
         let most = before.into_iter().max().unwrap_or(0);
         at_end as f64 - MORE * most as f64 - LEAST
     };
-    Some(pile(least).max(pile(greatest)).max(0.0) / values.len() as f64)
+    let pile = pile(least).max(pile(greatest));
+    Some(if pile < FEWEST { 0.0 } else { pile / values.len() as f64 })
 }
 
 /// Relative to the largest value; smaller changes count as none.
@@ -373,6 +376,13 @@ mod tests {
         assert!((0.05..=0.1).contains(&clipped(0.1)), "{}", clipped(0.1));
         assert!(piled_up(&wave).is_some_and(|share| share < 0.002));
         assert_eq!((piled_up(&[]), piled_up(&[4.0; 10])), (None, Some(0.0)));
+        // Three equal samples at the end are chance; four of them are not.
+        let ended = |equal: usize| -> Vec<f64> {
+            let rising = (0..100).map(|k| f64::from(k) * 0.04);
+            rising.chain(std::iter::repeat_n(5.0, equal)).collect()
+        };
+        assert_eq!(piled_up(&ended(3)), Some(0.0));
+        assert_eq!(piled_up(&ended(4)), Some(3.0 / 104.0));
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::parts::{Datum, Sections};
+use super::parts::Sections;
 use super::{ParameterInfo, Reason, StatisticName, Unmatched};
 use crate::words::{self, Text};
 

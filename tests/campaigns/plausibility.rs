@@ -518,7 +518,7 @@ fn records_that_do_not_belong_together() {
     });
     let both = (String::from("exchanged"), String::from("S02 S03"), Consequence::NotUsed);
     assert_eq!(swapped.first().map(of), Some(both), "{swapped:?}");
-    assert!(swapped[0].first.text().contains("simulation of section S03"));
+    assert!(swapped[0].first.text().to_string().contains("simulation of section S03"));
     let noisy = |values: &[f64]| -> Vec<f64> {
         let noise = |at: usize| 0.3 * ((at * 7919 % 1009) as f64 / 1009.0 - 0.5);
         values.iter().enumerate().map(|(at, value)| value * (1.0 + 0.01 * noise(at))).collect()

@@ -401,7 +401,7 @@ fn data_users(plan: &Plan) -> [Vec<Users>; 2] {
                 .checks
                 .iter()
                 .any(|rule| rule.required && name == format!("check {}", rule.name));
-        let mut add = |users: &mut Users| {
+        let add = |users: &mut Users| {
             users.add(&name, is_quantity);
             users.of_requirement |= of_requirement;
         };
