@@ -337,6 +337,128 @@ plausibility exchanged
              "better than with its own by at most 0.04. Sections of other sites have other irregularities: the"
              "same ones are one curve that counts twice."
 
+plausibility copied_section "Noise that both sides share in one section"
+  of         Y
+  of         Q
+  of         ay
+  of         az
+  require    shared_content(60 Hz, 100 Hz) <= 0.3
+  concerns   record
+  otherwise  not assessable
+  cause      "one of the two records was made from the other: with noise, delayed, scaled or blended"
+  note       "In 640 sound sections the share is at most 0.1."
+
+plausibility shared_noise "Noise that simulation and measurement share"
+  of         Y
+  of         Q
+  of         ay
+  of         az
+  over       sections
+  require    shared_content(60 Hz, 100 Hz) <= 0.04
+  concerns   record
+  otherwise  not assessable
+  cause      "one of the two records was made from the other: with noise, delayed, scaled or blended"
+  note       "Above 60 Hz a measurement is noise, of which a simulation knows nothing. In 41 sound campaigns"
+             "the share is at most 0.01; half of a copy in a blend shares nearly all."
+
+plausibility independent "Differences as large as those of a model"
+  of         Y
+  of         Q
+  of         ay
+  of         az
+  over       sections
+  require    unexplained_content(1 Hz, 10 Hz) >= 0.2
+  concerns   record
+  otherwise  not assessable
+  cause      "one of the two records was made from the other: filtered, with noise, scaled or fitted"
+  note       "In 41 sound campaigns it is at least 0.38 in every channel, with 4.3 in the middle: the errors"
+             "of a model are larger than the noise. Of copies with noise or behind a filter it is below 0.15."
+
+plausibility mirrored "Records in the same direction"
+  of         az
+  filter     BP
+  require    mirrored_correlation <= larger of 0.6, correlation
+  concerns   record
+  otherwise  not used
+  cause      "a record in the opposite running direction"
+
+plausibility aligned "Records at the same place"
+  of       az
+  filter   BP
+  require  |shift| <= 2 m
+  concerns record
+  cause    "the distance of one of the two records is shifted or scaled"
+  note     "A shift moves the section; up to 2 m are within the accuracy of the synchronisation."
+
+plausibility running_speed "Speed from distance and time against the table of sections"
+  require    range of running_distance / range of clock near speed within 1.5 %
+  concerns   record
+  otherwise  not used
+  cause      "the clock, the scale of the distance, or the speed of the table"
+  note       "A section is run at constant speed; in sound campaigns it is within 0.6 % of the table."
+
+plausibility table_of_curves "Cant deficiency against speed, radius and cant"
+  require    |cant_deficiency| near |1500 mm * (speed^2 / radius / 9.80665 m/s^2) - cant| within 15 mm
+  unless     direction is straight
+  concerns   record
+  otherwise  not used
+  cause      "radius, speed, cant or cant deficiency of the table of sections"
+
+plausibility track_curvature "Curvature of the track file against radius and direction"
+  require    mean of curvature near turn / radius within 5 %
+  unless     direction is straight
+  concerns   record
+  otherwise  not used
+  cause      "radius, direction or place of the section, or the track file of another section"
+
+plausibility track_straight "Straight sections against the track file"
+  require    |mean of curvature| <= 0.0002 1/m
+  unless     direction is not straight
+  concerns   record
+  otherwise  not used
+  cause      "direction or place of the section, or the track file of another section"
+
+plausibility track_cant "Cant of the track file against the table"
+  require    mean of track_cant near turn * cant within 15 mm
+  unless     direction is straight
+  concerns   record
+  otherwise  not used
+  cause      "cant or direction of the section, or the track file of another section"
+
+plausibility total_load "Vertical forces of all wheels against the static load, over all sections"
+  of       TotalQ
+  over     sections
+  require  median near 8 * Q0 within 11 %
+  cause    "Q0 of the vehicle file, a gain of the vertical forces, or the load of another state"
+  note     "A payload that nobody modelled adds up to 9 %. In sound campaigns without payload the sum is"
+           "within 2.5 %."
+
+plausibility modelled_load "Simulated vertical forces of all wheels against the static load, over all sections"
+  of       TotalQ
+  over     sections
+  require  simulated(median) near 8 * Q0 within 4 %
+  cause    "the masses of the model, or Q0 of the vehicle file"
+  note     "A simulation has the load that it was given: in sound campaigns it is within 2.5 % of the static"
+           "load."
+
+plausibility vertical_siblings "Vertical forces of the two wheels on one side of a bogie"
+  of       SiblingsI at each side
+  of       SiblingsII at each side
+  over     sections
+  require  measured(median) near simulated(median) within 0.085 * Q0
+  cause    "a gain or an offset of one of the two channels on one side"
+  note     "Payload, wind, cant and springs act on both wheels alike. In 38 sound campaigns both sides differ"
+           "by at most 6.5 % of Q0."
+
+plausibility vertical_agreement "Gain of a vertical wheel force between simulation and measurement"
+  of       Q
+  over     sections
+  require  measured(median) near simulated(median) within 500 kN
+  slope    0.65 to 1.4
+  cause    "the cants of the table of sections; a gain of the channel on one side"
+  note     "Over right-hand and left-hand curves. Worn wheels and soft springs change it to 0.76 and 1.32."
+           "Payload and wind move all sections alike, not the slope: the tolerance is wide."
+
 plausibility static_load "Vertical wheel force against the static load"
   of         SigmaQ at each wheelset
   require    median near 2 * Q0 within a factor of 1.4
@@ -344,15 +466,6 @@ plausibility static_load "Vertical wheel force against the static load"
   cause      "the load of an axle, a bogie or the vehicle instead of that of a wheel; another load condition"
   note       "A payload adds up to one third; the smallest likely error, the load of an axle, is a factor of"
              "2."
-
-plausibility load_transfer "Load transfer to the outer wheels"
-  of         DeltaQ at each wheelset
-  require    turn * median > -0.15 * Q0
-  unless     direction is straight or cant_deficiency < 60 mm
-  otherwise  not used
-  cause      "exchange of the left and the right wheel, or the direction of the curve"
-  note       "With 60 mm of cant deficiency the outer wheel carries about 5 % more. A cross wind of 25 kN"
-             "takes up to 12 % of Q0 more from it than the curve adds."
 
 plausibility load_transfer_gain "Load transfer to the outer wheels, over all sections"
   of         DeltaQ at each wheelset
@@ -364,6 +477,26 @@ plausibility load_transfer_gain "Load transfer to the outer wheels, over all sec
   cause      "exchange of the left and the right wheels, or the directions of the curves"
   note       "The centre of gravity lies 1 m to 2 m above the rail. A cross wind or a load on one side moves"
              "all sections alike, not the slope: the tolerance is wide."
+
+plausibility load_transfer "Load transfer to the outer wheels"
+  of         DeltaQ at each wheelset
+  require    turn * median > -0.15 * Q0
+  unless     direction is straight or cant_deficiency < 60 mm
+  otherwise  not used
+  cause      "exchange of the left and the right wheel, or the direction of the curve"
+  note       "With 60 mm of cant deficiency the outer wheel carries about 5 % more. A cross wind of 25 kN"
+             "takes up to 12 % of Q0 more from it than the curve adds."
+
+plausibility guiding_gain "Sum of the guiding forces over the unbalanced acceleration, over all sections"
+  of       TotalY
+  over     sections
+  require  median near -(8 * Q0 / 9.80665 m/s^2) * unbalanced_acceleration within 100 kN
+  unless   direction is straight
+  slope    0.9 to 1.1
+  cause    "a gain of the guiding forces; Q0, or the speeds, radii or cants of the table of sections"
+  note     "The sum balances the unbalanced acceleration of the mass, whatever the suspension. In 41 sound"
+           "campaigns the slope is from 0.92 to 1.06. Wind and offsets move all sections alike, not the"
+           "slope: the tolerance is wide."
 
 plausibility guiding_sign "Guiding force of the outer leading wheel"
   of         Y at wheelset 1 and side outer
@@ -382,60 +515,23 @@ plausibility guiding_balance "Sum of the guiding forces against the unbalanced a
   note     "The sum of all guiding forces balances the unbalanced acceleration. The tolerance is about 1"
            "m/s^2 below the difference that an inverted sign causes at 100 mm of cant deficiency."
 
-plausibility guiding_gain "Sum of the guiding forces over the unbalanced acceleration, over all sections"
-  of       TotalY
-  require  median near -(8 * Q0 / 9.80665 m/s^2) * unbalanced_acceleration within 100 kN
-  over     sections
-  slope    0.9 to 1.1
-  unless   direction is straight
-  cause    "a gain of the guiding forces; Q0, or the speeds, radii or cants of the table of sections"
-  note     "The sum balances the unbalanced acceleration of the mass, whatever the suspension. In 41 sound"
-           "campaigns the slope is from 0.92 to 1.06. Wind and offsets move all sections alike, not the"
-           "slope: the tolerance is wide."
-
-plausibility total_load "Vertical forces of all wheels against the static load, over all sections"
-  of       TotalQ
-  require  median near 8 * Q0 within 11 %
-  over     sections
-  cause    "Q0 of the vehicle file, a gain of the vertical forces, or the load of another state"
-  note     "A payload that nobody modelled adds up to 9 %. In sound campaigns without payload the sum is"
-           "within 2.5 %."
-
 plausibility lateral_gain "Lateral acceleration over the unbalanced acceleration, over all sections"
   of       ay at each running_gear
-  require  median near unbalanced_acceleration within 1 m/s^2
   over     sections
-  slope    0.95 to 1.45
+  require  median near unbalanced_acceleration within 1 m/s^2
   unless   direction is straight
+  slope    0.95 to 1.45
   cause    "a gain of the acceleration; the speeds, radii or cants of the table of sections"
   note     "The roll of the body adds a tenth to a third of the unbalanced acceleration. In 41 sound"
            "campaigns of three vehicles the slope is from 1.07 to 1.23."
 
 plausibility lateral_agreement "Gain of the lateral acceleration between simulation and measurement"
   of       ay at each running_gear
-  require  measured(median) near simulated(median) within 1 m/s^2
   over     sections
+  require  measured(median) near simulated(median) within 1 m/s^2
   slope    0.85 to 1.15
   cause    "a gain of the acceleration of one side; the speeds, radii or cants of the table of sections"
   note     "Soft springs and worn bump stops change it by up to 7 %, in 41 campaigns."
-
-plausibility vertical_agreement "Gain of a vertical wheel force between simulation and measurement"
-  of       Q
-  require  measured(median) near simulated(median) within 500 kN
-  over     sections
-  slope    0.65 to 1.4
-  cause    "the cants of the table of sections; a gain of the channel on one side"
-  note     "Over right-hand and left-hand curves. Worn wheels and soft springs change it to 0.76 and 1.32."
-           "Payload and wind move all sections alike, not the slope: the tolerance is wide."
-
-plausibility vertical_siblings "Vertical forces of the two wheels on one side of a bogie"
-  of       SiblingsI at each side
-  of       SiblingsII at each side
-  require  measured(median) near simulated(median) within 0.085 * Q0
-  over     sections
-  cause    "a gain or an offset of one of the two channels on one side"
-  note     "Payload, wind, cant and springs act on both wheels alike. In 38 sound campaigns both sides differ"
-           "by at most 6.5 % of Q0."
 
 plausibility wheel_climb "Ratio Y/Q below the limit of flange climbing"
   of         YQ at each wheelset and side
@@ -464,76 +560,6 @@ plausibility acceleration_level "Level of the car body accelerations"
   note       "The bounds are this protocol's own: a quarter of the value of a coach on good track, and twice"
              "the value of a locomotive on poor track."
 
-plausibility running_speed "Speed from distance and time against the table of sections"
-  require    range of running_distance / range of clock near speed within 5 %
-  concerns   record
-  otherwise  not used
-  cause      "the clock, the scale of the distance, or the speed of the table"
-  note       "A section is run at constant speed."
-
-plausibility table_of_curves "Cant deficiency against speed, radius and cant"
-  require    |cant_deficiency| near |1500 mm * (speed^2 / radius / 9.80665 m/s^2) - cant| within 15 mm
-  unless     direction is straight
-  otherwise  not used
-  cause      "radius, speed, cant or cant deficiency of the table of sections"
-
-plausibility track_curvature "Curvature of the track file against radius and direction"
-  require    mean of curvature near turn / radius within 5 %
-  unless     direction is straight
-  otherwise  not used
-  cause      "radius, direction or place of the section, or the track file of another section"
-
-plausibility track_straight "Straight sections against the track file"
-  require    |mean of curvature| <= 0.0002 1/m
-  unless     direction is not straight
-  otherwise  not used
-  cause      "direction or place of the section, or the track file of another section"
-
-plausibility track_cant "Cant of the track file against the table"
-  require    mean of track_cant near turn * cant within 15 mm
-  unless     direction is straight
-  otherwise  not used
-  cause      "cant or direction of the section, or the track file of another section"
-
-plausibility hum "Line of a fixed frequency"
-  of       Y
-  of       ay
-  require  measured(line) <= larger of 250, 15 * siblings(measured(line))
-  cause    "interference of a fixed frequency, such as that of the mains or of the traction current"
-  note     "A resonance reaches 130 times the lines around it, or shows in the neighbours as well."
-
-plausibility hum_vertical "Line of a fixed frequency"
-  of       Q
-  of       az
-  require  measured(line) <= larger of 250, 15 * siblings(measured(line))
-           or (measured(line_length) >= 2.4 m and measured(line_length) <= 4 m)
-           or (measured(line_length) >= 1.2 m and measured(line_length) <= 2 m)
-  cause    "interference of a fixed frequency, such as that of the mains or of the traction current"
-  note     "A wheel that is out of round has a line at its circumference or half of it: 2.4 m to 4 m are"
-           "wheels of 0.76 m to 1.27 m."
-
-plausibility repeated_samples "Repeated samples"
-  of         Y
-  of         Q
-  of         ay
-  of         az
-  require    repeated <= 25 %
-  otherwise  not used
-  cause      "a lower sampling rate of the source: each value was written several times"
-  note       "At most 10 % in sound campaigns, 50 % where each value stands twice."
-
-plausibility clipped "Peaks cut off"
-  of         Y
-  of         Q
-  of         ay
-  of         az
-  require    piled_up <= 0.5 % or resolution > 0.08 * std or held >= 0.8 * at_extreme
-             or piled_up <= 3 * siblings(piled_up)
-  otherwise  not used
-  cause      "a recorder or sensor at the end of its range: peaks are cut off"
-  note       "In 78 sound campaigns at 200 Hz at most 0.4 %. Clipping that moves a percentile by a tenth of"
-             "its limit piles up 0.6 % or more. A coarse signal has several samples at its largest value."
-
 plausibility spikes "Samples out of line"
   of         Y
   of         Q
@@ -559,6 +585,45 @@ plausibility interrupted "Gaps that were filled"
   note       "In 78 sound campaigns measured channels follow a smooth curve over at most 13 samples,"
              "simulated ones over 21, with neighbours alike."
 
+plausibility repeated_samples "Repeated samples"
+  of         Y
+  of         Q
+  of         ay
+  of         az
+  require    repeated <= 25 %
+  otherwise  not used
+  cause      "a lower sampling rate of the source: each value was written several times"
+  note       "At most 10 % in sound campaigns, 50 % where each value stands twice."
+
+plausibility clipped "Peaks cut off"
+  of         Y
+  of         Q
+  of         ay
+  of         az
+  require    piled_up <= 0.5 % or resolution > 0.08 * std or held >= 0.8 * at_extreme
+             or piled_up <= 3 * siblings(piled_up)
+  otherwise  not used
+  cause      "a recorder or sensor at the end of its range: peaks are cut off"
+  note       "In 78 sound campaigns at 200 Hz at most 0.4 %. Clipping that moves a percentile by a tenth of"
+             "its limit piles up 0.6 % or more. A coarse signal has several samples at its largest value."
+
+plausibility hum "Line of a fixed frequency"
+  of       Y
+  of       ay
+  require  measured(line) <= larger of 250, 15 * siblings(measured(line))
+  cause    "interference of a fixed frequency, such as that of the mains or of the traction current"
+  note     "A resonance reaches 130 times the lines around it, or shows in the neighbours as well."
+
+plausibility hum_vertical "Line of a fixed frequency"
+  of       Q
+  of       az
+  require  measured(line) <= larger of 250, 15 * siblings(measured(line))
+           or (measured(line_length) >= 2.4 m and measured(line_length) <= 4 m)
+           or (measured(line_length) >= 1.2 m and measured(line_length) <= 2 m)
+  cause    "interference of a fixed frequency, such as that of the mains or of the traction current"
+  note     "A wheel that is out of round has a line at its circumference or half of it: 2.4 m to 4 m are"
+           "wheels of 0.76 m to 1.27 m."
+
 plausibility filtered "Noise below that of the neighbours"
   of       Y
   of       Q
@@ -575,7 +640,7 @@ plausibility noisy "Noise above that of the neighbours"
   of       ay
   of       az
   require  measured(noise_floor) <= 2.2 * siblings(measured(noise_floor)) or measured(line) > 250
-  cause    "noise or interference of the measuring chain of this channel"
+  cause    "noise or interference of the measuring chain of this channel, or the signal of another sensor"
   note     "In 78 sound campaigns at most 1.8 times."
 
 plausibility noisy_guiding "Noise above that of the neighbours"
@@ -609,59 +674,6 @@ plausibility noise "Noise of a channel"
            "Hz it is at most 41 % for Q and 20 % for accelerations. At 100 Hz the signal itself changes from"
            "sample to sample, in all channels alike. Guiding forces on straight track are small against"
            "their noise and are not checked."
-
-plausibility mirrored "Records in the same direction"
-  of         az
-  filter     BP
-  require    mirrored_correlation <= larger of 0.6, correlation
-  concerns   record
-  otherwise  not used
-  cause      "a record in the opposite running direction"
-
-plausibility aligned "Records at the same place"
-  of       az
-  filter   BP
-  require  |shift| <= 2 m
-  concerns record
-  cause    "the distance of one of the two records is shifted or scaled"
-  note     "A shift moves the section; up to 2 m are within the accuracy of the synchronisation."
-
-plausibility shared_noise "Noise that simulation and measurement share"
-  of         Y
-  of         Q
-  of         ay
-  of         az
-  require    shared_content(60 Hz, 100 Hz) <= 0.04
-  over       sections
-  concerns   record
-  otherwise  not assessable
-  cause      "one of the two records was made from the other: with noise, delayed, scaled or blended"
-  note       "Above 60 Hz a measurement is noise, of which a simulation knows nothing. In 41 sound campaigns"
-             "the share is at most 0.01; half of a copy in a blend shares nearly all."
-
-plausibility copied_section "Noise that both sides share in one section"
-  of         Y
-  of         Q
-  of         ay
-  of         az
-  require    shared_content(60 Hz, 100 Hz) <= 0.3
-  concerns   record
-  otherwise  not assessable
-  cause      "one of the two records was made from the other: with noise, delayed, scaled or blended"
-  note       "In 640 sound sections the share is at most 0.1."
-
-plausibility independent "Differences as large as those of a model"
-  of         Y
-  of         Q
-  of         ay
-  of         az
-  require    unexplained_content(1 Hz, 10 Hz) >= 0.2
-  over       sections
-  concerns   record
-  otherwise  not assessable
-  cause      "one of the two records was made from the other: filtered, with noise, scaled or fitted"
-  note       "In 41 sound campaigns it is at least 0.38 in every channel, with 4.3 in the middle: the errors"
-             "of a model are larger than the noise. Of copies with noise or behind a filter it is below 0.15."
 
 plausibility freight_suspension "Category and suspension"
   require  not (vehicle.category is freight and vehicle.secondary_suspension)

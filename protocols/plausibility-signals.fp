@@ -44,7 +44,7 @@ plausibility exchanged "Records and channels that belong together"
   exchanged  from 0.6, by 0.3
   concerns   record
   otherwise  not used
-  cause      "exchanged channels, wheelsets, sides or sections in one of the records, or a vehicle that is turned"
+  cause      "exchanged or copied channels, wheelsets, sides or sections of one of the records; a turned vehicle"
   note       "Forces of neighbouring wheels are alike: in sound sections a channel agrees with another one"
              "better than with its own by at most 0.04."
 

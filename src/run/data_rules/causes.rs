@@ -152,8 +152,8 @@ impl Reach {
             };
             let covered = |(record, columns): &&(Option<String>, BTreeSet<String>)| {
                 own.iter().any(|(of, own)| {
-                    (of.is_none() || record.is_none() || of == record)
-                        && (self.of_record || same_rule || !own.is_disjoint(columns))
+                    let sides = of.is_none() || record.is_none() || of == record;
+                    self.of_record || sides && (same_rule || !own.is_disjoint(columns))
                 })
             };
             all += places.len();
