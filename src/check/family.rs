@@ -45,6 +45,12 @@ pub struct Ancestor {
 }
 
 impl Family {
+    /// The text of the protocol and of those that it extends, without those whose rules it uses.
+    pub fn extended(&self) -> impl Iterator<Item = &Arc<Source>> {
+        let from = self.ancestors.iter().map(|ancestor| ancestor.from);
+        std::iter::once(0).chain(from).filter_map(|at| self.sources.get(at))
+    }
+
     /// The protocol that this one extends.
     pub fn parent(&self) -> Option<&Document> {
         self.ancestors.first().map(|parent| &parent.merged)

@@ -16,8 +16,7 @@ pub fn changes(before: &Subject, after: &Subject) -> Vec<Change> {
 /// in the place of another.
 pub fn related(before: &Subject, after: &Subject) -> bool {
     let (a, b) = (&before.family, &after.family);
-    let common =
-        a.sources.iter().any(|source| b.sources.iter().any(|other| other.text == source.text));
+    let common = a.extended().any(|source| b.extended().any(|other| other.text == source.text));
     common || 2 * diff::kept(&a.merged, &b.merged) >= a.merged.blocks.len()
 }
 
