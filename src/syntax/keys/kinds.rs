@@ -326,11 +326,6 @@ pub const KINDS: &[Kind] = &[
                 "The condition on the data of the section and on values of its signals.",
                 "range of curvature <= 5 % * |mean of curvature|",
             ),
-            phrase(
-                "concerns",
-                "What a finding is about: `channel` (the default), or `record`: one at half of the positions or more is a fault of the whole record, and explains other findings in its sections.",
-                "record",
-            ),
             phrase("unless", "Sections that do not need to satisfy it.", "direction is straight"),
             phrase(
                 "otherwise",
@@ -383,6 +378,11 @@ pub const KINDS: &[Kind] = &[
                 "exchanged",
                 "In place of a condition: from which correlation on a measured record or channel is reported that agrees with the simulation of another section or channel, and by how much more than with its own; and from which one on two measurements are alike.",
                 "from 0.6, by 0.3, alike from 0.7",
+            ),
+            phrase(
+                "concerns",
+                "What a finding is about: `channel` (the default), or `record`: one at half of the positions or more is a fault of the whole record, and explains other findings in its sections.",
+                "record",
             ),
             phrase("unless", "Sections that do not need to satisfy it.", "direction is straight"),
             phrase(
