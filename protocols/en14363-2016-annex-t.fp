@@ -383,12 +383,13 @@ plausibility mirrored "Records in the same direction"
   cause      "a record in the opposite running direction"
 
 plausibility aligned "Records at the same place"
-  of       az
-  filter   BP
-  require  |shift| <= 2 m
-  concerns record
-  cause    "the distance of one of the two records is shifted or scaled"
-  note     "A shift moves the section; up to 2 m are within the accuracy of the synchronisation."
+  of        az
+  filter    BP
+  require   |shift| <= 2 m or |shift - siblings(shift)| > 2 m
+  concerns  record
+  cause     "the distance of one of the two records is shifted or scaled"
+  note      "A shift moves the section, at both ends of the body alike; up to 2 m are within the accuracy of"
+            "the synchronisation."
 
 plausibility running_speed "Speed from distance and time against the table of sections"
   require    range of running_distance / range of clock near speed within 1.5 %

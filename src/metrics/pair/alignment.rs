@@ -1,5 +1,6 @@
 //! Alignment of two records along the axis: shift, mirroring, drift.
 
+use super::lag::{Agreement, agreements};
 use super::{Metric, Undefined, check, undefined};
 use crate::metrics::resample::{interpolate, uniform_grid};
 use crate::metrics::statistics;
@@ -34,16 +35,7 @@ pub fn shift(axis: &[f64], simulated: &[f64], measured: &[f64]) -> Metric {
     let on_grid = |signal: &[f64]| interpolate(axis, signal, &grid).map_err(|_| no_axis());
     let (s, m) = (on_grid(simulated)?, on_grid(measured)?);
     let most = (FARTHEST * GRID) as usize;
-    // Ahead: the measured signal has at a smaller coordinate the value that the simulated signal
-    // has at a larger one.
-    let ahead = |lag: usize| statistics::correlation(&s[lag..], &m[..m.len() - lag]);
-    let behind = |lag: usize| statistics::correlation(&s[..s.len() - lag], &m[lag..]);
-    let all: Vec<f64> = (1..=most)
-        .rev()
-        .map(behind)
-        .chain((0..=most).map(ahead))
-        .map(|found| found.unwrap_or(f64::NEG_INFINITY))
-        .collect();
+    let all = agreements(&s, &m, most, Agreement::Correlation)?;
     let best = (0..all.len()).fold(0, |best, at| if all[at] > all[best] { at } else { best });
     let peak = |at: &usize| all[at - 1] <= all[*at] && all[at + 1] <= all[*at];
     let nearest = (1..all.len() - 1)

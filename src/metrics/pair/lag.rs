@@ -32,6 +32,31 @@ pub fn best_shift(
     most: usize,
     by: Agreement,
 ) -> Result<isize, Undefined> {
+    let all = agreements(simulated, measured, most, by)?;
+    let most = all.len() / 2;
+    let mut best = all[most];
+    if best == f64::NEG_INFINITY {
+        return undefined("one of the signals is constant");
+    }
+    let mut found = 0;
+    for by_samples in 1..=most as isize {
+        for shift in [by_samples, -by_samples] {
+            let here = all[(shift + most as isize) as usize];
+            if here > best + TIE {
+                (best, found) = (here, shift);
+            }
+        }
+    }
+    Ok(found)
+}
+
+/// The agreement at each shift from -most to most; below all others where a part is constant.
+pub fn agreements(
+    simulated: &[f64],
+    measured: &[f64],
+    most: usize,
+    by: Agreement,
+) -> Result<Vec<f64>, Undefined> {
     let count = simulated.len();
     let most = most.min(count.saturating_sub(1));
     // Near zero mean, so that nothing cancels in the sums below.
@@ -50,7 +75,7 @@ pub fn best_shift(
     let (squares_s, squares_m) =
         (RunningSums::new(s.iter().map(|v| v * v)), RunningSums::new(m.iter().map(|v| v * v)));
     let least = (CONSTANT * squares_s.between(0, count), CONSTANT * squares_m.between(0, count));
-    let agreement = |shift: isize| -> Option<f64> {
+    let agreement = |shift: isize| -> f64 {
         let by_samples = shift.unsigned_abs();
         let length = count - by_samples;
         let (from_s, from_m) = if shift > 0 { (by_samples, 0) } else { (0, by_samples) };
@@ -64,20 +89,13 @@ pub fn best_shift(
             energy_s -= sum_s * sum_s / length as f64;
             energy_m -= sum_m * sum_m / length as f64;
         }
-        (energy_s > least.0 && energy_m > least.1).then(|| product / (energy_s * energy_m).sqrt())
-    };
-    let Some(mut best) = agreement(0) else {
-        return undefined("one of the signals is constant");
-    };
-    let mut found = 0;
-    for by_samples in 1..=most as isize {
-        for shift in [by_samples, -by_samples] {
-            if let Some(here) = agreement(shift).filter(|here| *here > best + TIE) {
-                (best, found) = (here, shift);
-            }
+        if energy_s > least.0 && energy_m > least.1 {
+            product / (energy_s * energy_m).sqrt()
+        } else {
+            f64::NEG_INFINITY
         }
-    }
-    Ok(found)
+    };
+    Ok((-(most as isize)..=most as isize).map(agreement).collect())
 }
 
 /// The parts of both signals that overlap after the simulated one is moved to the left by so many

@@ -89,7 +89,11 @@ pub fn by_cause(plan: &Plan, sections: usize, findings: Vec<Finding>) -> Vec<Fin
         order.entry(&rule.name).or_insert((rule.rank(), at));
     }
     let mut joined = Finding::joined(findings);
-    joined.sort_by_key(|finding| order.get(finding.code.as_str()).copied().unwrap_or((u8::MAX, 0)));
+    joined.sort_by_key(|finding| match finding.first.data {
+        // A channel that is late agrees with that of a wheelset behind.
+        FindingData::Exchanged { .. } => (0, usize::MAX),
+        _ => order.get(finding.code.as_str()).copied().unwrap_or((u8::MAX, 0)),
+    });
     let mut kept: Vec<(Finding, Reach)> = Vec::new();
     for finding in joined {
         let own = Reach::of(plan, sections, &finding);

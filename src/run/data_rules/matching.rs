@@ -103,7 +103,13 @@ impl Matching<'_> {
             let of_section = |of: &Section<'_>, with: &Shapes<'_>| {
                 Some((of.unit.name.clone(), together(shapes, with)?))
             };
-            let earlier = self.sections[..at].iter().filter(elsewhere);
+            // Of records that are alike all channels are: one is enough to exclude most sections.
+            let like = |of: &&Section<'_>| {
+                let own = of.measured.get(number).and_then(|shapes| partner(first, shapes));
+                let agreed = own.and_then(|own| first.agreement(own));
+                agreed >= self.test.alike.map(|alike| 0.5 * alike)
+            };
+            let earlier = self.sections[..at].iter().filter(elsewhere).filter(like);
             let same = earlier.filter_map(|of| of_section(of, of.measured.get(number)?));
             if let Some((section, found)) =
                 self.test.alike.and_then(|alike| best(same).filter(|(_, found)| *found >= alike))
