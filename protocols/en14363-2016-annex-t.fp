@@ -481,12 +481,12 @@ plausibility load_transfer_gain "Load transfer to the outer wheels, over all sec
 
 plausibility load_transfer "Load transfer to the outer wheels"
   of         DeltaQ at each wheelset
-  require    turn * median > -0.15 * Q0
+  require    turn * median > -0.2 * Q0
   unless     direction is straight or cant_deficiency < 60 mm
   otherwise  not used
   cause      "exchange of the left and the right wheel, or the direction of the curve"
   note       "With 60 mm of cant deficiency the outer wheel carries about 5 % more. A cross wind of 25 kN"
-             "takes up to 12 % of Q0 more from it than the curve adds."
+             "takes up to 19 % of Q0 more from it than the curve adds."
 
 plausibility guiding_gain "Sum of the guiding forces over the unbalanced acceleration, over all sections"
   of       TotalY

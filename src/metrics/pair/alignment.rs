@@ -37,15 +37,15 @@ pub fn shift(axis: &[f64], simulated: &[f64], measured: &[f64]) -> Metric {
     let most = (FARTHEST * GRID) as usize;
     let all = agreements(&s, &m, most, Agreement::Correlation)?;
     let best = (0..all.len()).fold(0, |best, at| if all[at] > all[best] { at } else { best });
+    if all[best] < FOLLOWS {
+        return undefined("the signals are not correlated at any shift");
+    }
     let peak = |at: &usize| all[at - 1] <= all[*at] && all[at + 1] <= all[*at];
     let nearest = (1..all.len() - 1)
         .filter(|at| all[*at] > all[best] - BY_CHANCE)
         .filter(peak)
         .min_by_key(|at| at.abs_diff(most));
     let best = nearest.unwrap_or(best);
-    if all[best] < FOLLOWS {
-        return undefined("the signals are not correlated at any shift");
-    }
     if best == 0 || best + 1 == all.len() {
         return undefined("the best shift is at the end of the search range");
     }
