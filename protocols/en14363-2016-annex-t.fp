@@ -334,8 +334,9 @@ check full_curve "Section lies in full curve or on straight track"
 plausibility exchanged
   exchanged  from 0.6, by 0.3, alike from 0.7
   note       "Forces of neighbouring wheels are alike: in sound sections a channel agrees with another one"
-             "better than with its own by at most 0.04. Sections of other sites have other irregularities: the"
-             "same ones are one curve that counts twice."
+             "better than with its own by at most 0.04. Over all channels, records of six sound campaigns have"
+             "correlations of 0.62 to 0.95 with their own simulation, and of at most 0.29 with records of other"
+             "sites, which have other irregularities: the same ones are one curve that counts twice."
 
 plausibility copied_section "Noise that both sides share in one section"
   of         Y
