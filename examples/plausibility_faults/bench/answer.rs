@@ -120,8 +120,10 @@ impl Answer {
 
 impl Found {
     fn read(finding: &Value) -> Self {
+        // Samples for which no rule can be checked are told with their own reason.
+        let of_samples = &finding["data"]["reason"]["code"];
         Self {
-            code: text(&finding["code"]),
+            code: text(if of_samples.is_string() { of_samples } else { &finding["code"] }),
             guessed: finding["cause_data"]["code"] == "both",
             places: list(&finding["places"]).map(Place::read).collect(),
         }

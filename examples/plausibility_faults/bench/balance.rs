@@ -25,7 +25,7 @@ fn gain(kind: &str) -> &'static [&'static str] {
 const OFFSET: &[&str] = &["vertical_siblings"];
 const DRIFT: &[&str] = &["drift"];
 /// Rules that name the static load of the vehicle file, or another load.
-const LOAD: &[&str] = &["total_load", "static_load"];
+const LOAD: &[&str] = &["total_load", "modelled_load", "static_load"];
 
 /// Rules that name a column of the table of sections.
 fn column_of_curves(column: &str) -> &'static [&'static str] {

@@ -6,8 +6,8 @@ use super::folder::{Folder, SECTIONS, Side};
 use super::signal::each;
 
 /// Codes of a cell that is not a number, in records and tables, and of a section without its record.
-const NUL: &[&str] = &["nul-byte", "not-a-number", "unreadable", "said", "control-character"];
-const CELL: &[&str] = &["not-a-number", "not-finite", "unreadable", "said"];
+const NUL: &[&str] = &["not-a-number", "unreadable", "said", "wrong-cell", "nul-bytes"];
+const CELL: &[&str] = &["not-a-number", "unreadable", "said"];
 const SPIKES: &[&str] = &["spikes"];
 const NEAR_ZERO: &[&str] = &["unloaded", "interrupted", "spikes"];
 

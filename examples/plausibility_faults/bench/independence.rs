@@ -9,6 +9,9 @@ use super::signal::{at_distances, delayed, deviation, each, filtered, mean, rate
 
 /// Rules that say that one side was made from the other.
 const RIGHT: &[&str] = &["shared_noise", "copied_section", "independent", "copies"];
+/// Peaks that end where those of the other side do.
+const CLIPPED: &[&str] =
+    &["shared_noise", "copied_section", "independent", "copies", "clipped", "saturated"];
 
 pub const KINDS: &[Kind] = &[
     ("plus noise", |draw, folder| {
@@ -45,7 +48,7 @@ pub const KINDS: &[Kind] = &[
     }),
     ("clipped to its range", |draw, folder| {
         let rest = draw.log_between(0.5, 3.0);
-        made(
+        let fault = made(
             draw,
             folder,
             "clipped to it, with the own deviations times",
@@ -59,7 +62,8 @@ pub const KINDS: &[Kind] = &[
                     |n: usize| mean(at.own) + size.max(1.0) * (at.own[n] - mean(at.own)) - middle;
                 each(from, |n, _| wider(n).clamp(low, high))
             },
-        )
+        );
+        Fault { right: CLIPPED, ..fault }
     }),
     ("offsets removed by zone", |draw, folder| offsets(draw, folder, false)),
     ("offsets removed by section", |draw, folder| offsets(draw, folder, true)),

@@ -11,7 +11,8 @@ use super::folder::{Folder, Side};
 use super::signal::{deviation, each, filtered, percentile, with_noise};
 
 const SPIKES: &[&str] = &["spikes"];
-const DROPOUTS: &[&str] = &["interrupted", "spikes", "live", "unloaded"];
+/// A wheel force of zero is told where something is divided by it.
+const DROPOUTS: &[&str] = &["interrupted", "spikes", "live", "unloaded", "divided-by-zero"];
 const GAPS: &[&str] = &["interrupted", "live"];
 /// The distance of what follows is shifted.
 const LOST: &[&str] = &["aligned", "lost_rows"];
