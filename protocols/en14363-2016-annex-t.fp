@@ -354,8 +354,8 @@ plausibility shared_noise "Noise that simulation and measurement share"
   of         Q
   of         ay
   of         az
-  over       sections
   require    shared_content(60 Hz, 100 Hz) <= 0.04
+  over       sections
   concerns   record
   otherwise  not assessable
   cause      "one of the two records was made from the other: with noise, delayed, scaled or blended"
@@ -367,8 +367,8 @@ plausibility independent "Differences as large as those of a model"
   of         Q
   of         ay
   of         az
-  over       sections
   require    unexplained_content(1 Hz, 10 Hz) >= 0.2
+  over       sections
   concerns   record
   otherwise  not assessable
   cause      "one of the two records was made from the other: filtered, with noise, scaled or fitted"
@@ -401,44 +401,44 @@ plausibility running_speed "Speed from distance and time against the table of se
 
 plausibility table_of_curves "Cant deficiency against speed, radius and cant"
   require    |cant_deficiency| near |1500 mm * (speed^2 / radius / 9.80665 m/s^2) - cant| within 15 mm
-  unless     direction is straight
   concerns   record
+  unless     direction is straight
   otherwise  not used
   cause      "radius, speed, cant or cant deficiency of the table of sections"
 
 plausibility track_curvature "Curvature of the track file against radius and direction"
   require    mean of curvature near turn / radius within 5 %
-  unless     direction is straight
   concerns   record
+  unless     direction is straight
   otherwise  not used
   cause      "radius, direction or place of the section, or the track file of another section"
 
 plausibility track_straight "Straight sections against the track file"
   require    |mean of curvature| <= 0.0002 1/m
-  unless     direction is not straight
   concerns   record
+  unless     direction is not straight
   otherwise  not used
   cause      "direction or place of the section, or the track file of another section"
 
 plausibility track_cant "Cant of the track file against the table"
   require    mean of track_cant near turn * cant within 15 mm
-  unless     direction is straight
   concerns   record
+  unless     direction is straight
   otherwise  not used
   cause      "cant or direction of the section, or the track file of another section"
 
 plausibility total_load "Vertical forces of all wheels against the static load, over all sections"
   of       TotalQ
-  over     sections
   require  median near 8 * Q0 within 11 %
+  over     sections
   cause    "Q0 of the vehicle file, a gain of the vertical forces, or the load of another state"
   note     "A payload that nobody modelled adds up to 9 %. In sound campaigns without payload the sum is"
            "within 2.5 %."
 
 plausibility modelled_load "Simulated vertical forces of all wheels against the static load, over all sections"
   of       TotalQ
-  over     sections
   require  simulated(median) near 8 * Q0 within 4 %
+  over     sections
   cause    "the masses of the model, or Q0 of the vehicle file"
   note     "A simulation has the load that it was given: in sound campaigns it is within 2.5 % of the static"
            "load."
@@ -446,16 +446,16 @@ plausibility modelled_load "Simulated vertical forces of all wheels against the 
 plausibility vertical_siblings "Vertical forces of the two wheels on one side of a bogie"
   of       SiblingsI at each side
   of       SiblingsII at each side
-  over     sections
   require  measured(median) near simulated(median) within 0.085 * Q0
+  over     sections
   cause    "a gain or an offset of one of the two channels on one side"
   note     "Payload, wind, cant and springs act on both wheels alike. In 38 sound campaigns both sides differ"
            "by at most 6.5 % of Q0."
 
 plausibility vertical_agreement "Gain of a vertical wheel force between simulation and measurement"
   of       Q
-  over     sections
   require  measured(median) near simulated(median) within 500 kN
+  over     sections
   slope    0.65 to 1.4
   cause    "the cants of the table of sections; a gain of the channel on one side"
   note     "Over right-hand and left-hand curves. Worn wheels and soft springs change it to 0.76 and 1.32."
@@ -471,10 +471,10 @@ plausibility static_load "Vertical wheel force against the static load"
 
 plausibility load_transfer_gain "Load transfer to the outer wheels, over all sections"
   of         DeltaQ at each wheelset
-  over       sections
   require    median near 4 * Q0 / 9.80665 m/s^2 * unbalanced_acceleration within 100 kN
-  unless     direction is straight
+  over       sections
   slope      0.1 to 3
+  unless     direction is straight
   otherwise  not assessable
   cause      "exchange of the left and the right wheels, or the directions of the curves"
   note       "The centre of gravity lies 1 m to 2 m above the rail. A cross wind or a load on one side moves"
@@ -491,10 +491,10 @@ plausibility load_transfer "Load transfer to the outer wheels"
 
 plausibility guiding_gain "Sum of the guiding forces over the unbalanced acceleration, over all sections"
   of       TotalY
-  over     sections
   require  median near -(8 * Q0 / 9.80665 m/s^2) * unbalanced_acceleration within 100 kN
-  unless   direction is straight
+  over     sections
   slope    0.9 to 1.1
+  unless   direction is straight
   cause    "a gain of the guiding forces; Q0, or the speeds, radii or cants of the table of sections"
   note     "The sum balances the unbalanced acceleration of the mass, whatever the suspension. In 41 sound"
            "campaigns the slope is from 0.92 to 1.06. Wind and offsets move all sections alike, not the"
@@ -519,18 +519,18 @@ plausibility guiding_balance "Sum of the guiding forces against the unbalanced a
 
 plausibility lateral_gain "Lateral acceleration over the unbalanced acceleration, over all sections"
   of       ay at each running_gear
-  over     sections
   require  median near unbalanced_acceleration within 1 m/s^2
-  unless   direction is straight
+  over     sections
   slope    0.95 to 1.45
+  unless   direction is straight
   cause    "a gain of the acceleration; the speeds, radii or cants of the table of sections"
   note     "The roll of the body adds a tenth to a third of the unbalanced acceleration. In 41 sound"
            "campaigns of three vehicles the slope is from 1.07 to 1.23."
 
 plausibility lateral_agreement "Gain of the lateral acceleration between simulation and measurement"
   of       ay at each running_gear
-  over     sections
   require  measured(median) near simulated(median) within 1 m/s^2
+  over     sections
   slope    0.85 to 1.15
   cause    "a gain of the acceleration of one side; the speeds, radii or cants of the table of sections"
   note     "Soft springs and worn bump stops change it by up to 7 %, in 41 campaigns."
