@@ -45,8 +45,8 @@ pub fn imported_again(folder: &Path, sources: &Path) -> Result<Check, Problems> 
             ));
         }
     }
-    let first = imported.written.values().flat_map(|names| names.keys()).next();
-    let format = first.map_or(Format::Csv, |name| Format::of(Path::new(name)));
+    let mut written = imported.records.iter().filter_map(|record| record.written.as_ref());
+    let format = written.next().map_or(Format::Csv, |file| Format::of(Path::new(&file.path)));
     let needs = compiled.as_ref().map(|compiled| needs(&compiled.plan, &compiled.graph));
     let scratch = disk::scratch().map_err(|error| {
         Problem::error("write-failed", format!("no temporary folder can be made: {error}"))

@@ -303,14 +303,13 @@ impl Campaign {
 /// Records that are said to be edited must be ones that the import wrote, where it wrote some of
 /// their side.
 fn check_edited(edited: &[Edited], origin: Option<&Origin>, problems: &mut Problems) {
-    let Some(imported) = origin.and_then(|origin| origin.imported.as_ref()) else { return };
     for Spanned { value, span } in edited.iter().map(|edited| &edited.record) {
-        let Some((side, name)) = value.split_once('/') else { continue };
-        let Some(names) = imported.written.get(side) else { continue };
-        if !names.keys().any(|known| Format::stem(known) == Format::stem(name)) {
+        let side = value.split('/').next().unwrap_or_default();
+        let records = origin.into_iter().flat_map(|origin| origin.imported_records(side));
+        let known: Vec<&str> = records.map(|record| record.path.as_str()).collect();
+        if !known.is_empty() && !known.iter().any(|one| Format::stem(one) == Format::stem(value)) {
             let problem = problem!("unknown-record", span, "no import wrote a record `{value}`");
-            problems
-                .push(problem.suggest(value, names.keys().map(|name| format!("{side}/{name}"))));
+            problems.push(problem.suggest(value, known));
         }
     }
 }

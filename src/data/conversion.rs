@@ -129,27 +129,23 @@ fn name_converted(runs: &mut Node, pairs: &[Pair]) {
 /// those that an import wrote: `certify` recognises them by their hash.
 fn fitted(text: String, pairs: &[Pair]) -> String {
     let Ok(mut origin) = serde_yaml::from_str::<serde_yaml::Value>(&text) else { return text };
-    let files = origin.get_mut("fitted to").and_then(serde_yaml::Value::as_sequence_mut);
     let mut changed = false;
-    for file in files.into_iter().flatten() {
-        let hash = file.get("sha256").and_then(serde_yaml::Value::as_str);
-        let pair = pairs.iter().find(|pair| hash == Some(pair.before.1.as_str()));
-        if let (Some(Pair { after, .. }), Some(file)) = (pair, file.as_mapping_mut()) {
-            file.insert("path".into(), after.0.as_str().into());
-            file.insert("sha256".into(), after.1.as_str().into());
-            changed = true;
-        }
-    }
-    let sides = origin.get_mut("written").and_then(serde_yaml::Value::as_mapping_mut);
-    for (side, names) in sides.into_iter().flatten() {
-        let (Some(side), Some(names)) = (side.as_str(), names.as_mapping_mut()) else { continue };
-        for Pair { before, after } in pairs {
-            let name = |path: &str| path.strip_prefix(side)?.strip_prefix('/').map(str::to_string);
-            let (Some(old), Some(new)) = (name(&before.0), name(&after.0)) else { continue };
+    // The file that a simulation was fitted to may have another path in its own campaign.
+    for (list, by) in [("fitted to", "sha256"), ("records", "path")] {
+        let files = origin.get_mut(list).and_then(serde_yaml::Value::as_sequence_mut);
+        for file in files.into_iter().flatten().filter_map(serde_yaml::Value::as_mapping_mut) {
+            let is = |key: &str, known: &str| {
+                file.get(key).and_then(serde_yaml::Value::as_str) == Some(known)
+            };
+            let known = |Pair { before: (path, sha256), .. }: &&Pair| {
+                is(by, if by == "path" { path } else { sha256 })
+            };
+            let Some(Pair { before, after }) = pairs.iter().find(known) else { continue };
             // That of a record that was changed before stays another one.
-            let Some(hash) = names.remove(old.as_str()) else { continue };
-            let same = hash.as_str() == Some(before.1.as_str());
-            names.insert(new.into(), if same { after.1.as_str().into() } else { hash });
+            if is("sha256", &before.1) {
+                file.insert("sha256".into(), after.1.as_str().into());
+            }
+            file.insert("path".into(), after.0.as_str().into());
             changed = true;
         }
     }
@@ -174,9 +170,11 @@ mod tests {
             before: (format!("m/{name}.csv"), "aa".into()),
             after: (format!("m/{name}.parquet"), hash.into()),
         };
-        let text = "written:\n  m:\n    S.csv: aa\n    T.csv: cc\n    U.csv: dd\n";
-        let expected = "written:\n  m:\n    U.csv: dd\n    S.parquet: ee\n    T.parquet: cc\n";
+        let record = |(name, hash): (&str, &str)| format!("- path: m/{name}\n  sha256: {hash}\n");
+        let records = |all: [(&str, &str); 3]| format!("records:\n{}", all.map(record).concat());
+        let text = records([("S.csv", "aa"), ("T.csv", "cc"), ("U.csv", "dd")]);
+        let expected = records([("S.parquet", "ee"), ("T.parquet", "cc"), ("U.csv", "dd")]);
         let pairs = [pair("S", "ee"), pair("T", "ff")];
-        assert_eq!(fitted(text.to_string(), &pairs), expected, "T was changed before");
+        assert_eq!(fitted(text, &pairs), expected, "T was changed before");
     }
 }

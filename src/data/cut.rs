@@ -160,14 +160,18 @@ fn rest(
     outputs.add(CAMPAIGN_FILE, text.as_bytes())
 }
 
-/// The origin without the hashes of whole records.
+/// The origin without the paths and hashes of whole records, which are not in the copy.
 fn origin_of_parts(bytes: &[u8]) -> String {
     let text = String::from_utf8_lossy(bytes).into_owned();
-    let Ok(mut origin) = serde_yaml::from_str::<serde_yaml::Mapping>(&text) else { return text };
-    match origin.remove("written") {
-        Some(_) => serde_yaml::to_string(&origin).unwrap_or(text),
-        None => text,
+    let Ok(mut origin) = serde_yaml::from_str::<serde_yaml::Value>(&text) else { return text };
+    let Some(records) = origin.get_mut("records").and_then(serde_yaml::Value::as_sequence_mut)
+    else {
+        return text;
+    };
+    for record in records.iter_mut().filter_map(serde_yaml::Value::as_mapping_mut) {
+        ["path", "sha256"].into_iter().for_each(|key| drop(record.remove(key)));
     }
+    serde_yaml::to_string(&origin).unwrap_or(text)
 }
 
 /// The table of sections with what the campaign says of each run, without the run.

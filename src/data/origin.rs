@@ -113,12 +113,10 @@ impl Origin {
         self.effects.iter().map(|effect| effect.in_words(equals)).collect::<Vec<_>>().join(" and ")
     }
 
-    /// The SHA-256 of a record as an import wrote it, by its path; `None` if it did not write it, or
-    /// no record of this side.
-    pub fn written(&self, side: &str, path: &str) -> Option<Option<&str>> {
-        let names = self.imported.as_ref()?.written.get(side)?;
-        let name = path.strip_prefix(side).and_then(|rest| rest.strip_prefix('/'));
-        Some(name.and_then(|name| names.get(name)).map(String::as_str))
+    /// The records of a side as an import wrote them; none if another program wrote them since.
+    pub fn imported_records(&self, side: &str) -> impl Iterator<Item = &OriginFile> {
+        let all = self.imported.iter().flat_map(|imported| &imported.records);
+        all.filter(move |record| record.side == side).filter_map(|record| record.written.as_ref())
     }
 
     /// The text of `origin.yaml`.
@@ -141,9 +139,6 @@ fields! {
         /// For each side what its channels were made of, `Y_1L = -ST1 Y li`.
         "channels" channels: IndexMap<String, Vec<String>>,
         "records" records: Vec<ImportedRecord>,
-        /// SHA-256 of the records as they were written, by side and by name.
-        #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
-        "written" written: IndexMap<String, IndexMap<String, String>>,
         /// The text of the mapping.
         "mapping" mapping: Literal,
     }
@@ -153,7 +148,7 @@ fields! {
     /// How one record was made.
     #[derive(PartialEq, Serialize, Deserialize)]
     pub struct ImportedRecord: "a record of an import" or Ignored {
-        /// `measurement` or `simulation`.
+        /// `measurement`, `simulation` or `track`.
         "side" side: String,
         "section" section: String,
         /// The file that it was read from, as the mapping names it.
@@ -163,7 +158,17 @@ fields! {
         "read as" read_as: String,
         /// What was done, in order.
         "steps" steps: Vec<String>,
+    } also {
+        /// The record in the campaign, as it was written: its `path` and `sha256`.
+        #[serde(flatten)]
+        written: Option<OriginFile> = written,
     }
+}
+
+/// The record that was written, if its path is stated.
+fn written<C>(reader: &mut Reader<'_, C>, key: &Key, node: &Node) -> Option<OriginFile> {
+    node.get("path")?;
+    OriginFile::from_node(reader, key, node)
 }
 
 #[cfg(test)]
@@ -226,9 +231,11 @@ mod tests {
                     file: "raw/Messung: S01.csv".into(),
                     read_as: "csv; separator `;`".into(),
                     steps: vec!["1794 rows at 200 Hz".into(), "- odd".into()],
+                    written: Some(OriginFile {
+                        path: "measurement/S01.csv".into(),
+                        sha256: "12e4".into(),
+                    }),
                 }],
-                written: [("measurement".into(), [("S01.csv".into(), "12e4".into())].into())]
-                    .into(),
             }),
         };
         let (found, problems) = read(&origin.text());

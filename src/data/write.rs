@@ -113,8 +113,8 @@ impl Outputs {
         self.set.close(file).map_err(|error| self.not_added(inside, error))
     }
 
-    /// The files that were added, with their SHA-256.
-    pub fn hashes(&self) -> impl Iterator<Item = (&str, &str)> {
+    /// The files that were added, in this order, with their SHA-256.
+    pub fn hashes(&self) -> impl DoubleEndedIterator<Item = (&str, &str)> {
         self.set.hashes()
     }
 

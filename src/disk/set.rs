@@ -177,7 +177,7 @@ impl Set {
     }
 
     /// The files that were added, with their SHA-256.
-    pub fn hashes(&self) -> impl Iterator<Item = (&str, &str)> {
+    pub fn hashes(&self) -> impl DoubleEndedIterator<Item = (&str, &str)> {
         self.paths.iter().map(String::as_str).zip(self.hashes.iter().map(String::as_str))
     }
 

@@ -60,9 +60,9 @@ struct Imported {
 }
 
 impl Imported {
-    /// Adds a record that was written, and its file.
-    fn add(&mut self, made: Made, source: &SourceFile) {
-        self.accounts.push(account(&made, source));
+    /// Adds the record that was written last, and its file.
+    fn add(&mut self, made: Made, source: &SourceFile, outputs: &Outputs) {
+        self.accounts.push(account(&made, source, outputs));
         self.warnings.add(made.warnings);
         if !self.sources.contains(source) {
             self.sources.push(source.clone());
@@ -142,7 +142,7 @@ fn sections(import: Import<'_>, outputs: &mut Outputs) -> Result<Imported, Probl
                         let ending = format.ending();
                         let inside = mapping::record_path(made.kind, &made.section, ending);
                         outputs.add(&inside, &bytes)?;
-                        all.add(made, &source);
+                        all.add(made, &source, outputs);
                     }
                     Ok(_) => {}
                     Err(problems) => all.faults.add(problems),

@@ -58,7 +58,7 @@ pub fn import(import: Import<'_>, outputs: &mut Outputs) -> Result<Imported, Pro
             outputs.add_in_parts(&inside, |sink| {
                 write_record(&made.columns, format, Some(&store), sink)
             })?;
-            all.add(made, &source);
+            all.add(made, &source, outputs);
         }
     }
     Ok(all)

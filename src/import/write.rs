@@ -11,7 +11,9 @@ use rayon::prelude::*;
 
 use super::mapping::{Channels, Distance, Mapping, Runs, Side, record_path};
 use super::process::{BLOCK, Column, Made, Store, Values};
+use crate::data::RecordKind;
 use crate::data::campaign::{CAMPAIGN_FILE, RUNS};
+use crate::data::hash::sha256;
 use crate::data::origin::{Imported, ImportedRecord, ORIGIN_FILE, ORIGIN_KEY, Origin, OriginFile};
 use crate::data::record::Format;
 use crate::data::text::read_any;
@@ -116,14 +118,17 @@ impl SourceFile {
     }
 }
 
-/// How a record was made: its side, section and file, and the steps.
-pub fn account(made: &Made, source: &SourceFile) -> ImportedRecord {
+/// How the record that was added last was made: its side, section and file, and the steps.
+pub fn account(made: &Made, source: &SourceFile, outputs: &Outputs) -> ImportedRecord {
+    let file =
+        |(path, sha256): (&str, &str)| OriginFile { path: path.into(), sha256: sha256.into() };
     ImportedRecord {
         side: made.kind.key().into(),
         section: made.section.clone(),
         file: source.file.path.clone(),
         read_as: source.read_as.clone(),
         steps: made.steps.clone(),
+        written: outputs.hashes().next_back().map(file),
     }
 }
 
@@ -222,54 +227,48 @@ pub fn add_campaign(
     mapping: &Mapping,
     format: Format,
     sources: &[SourceFile],
-    records: Vec<ImportedRecord>,
+    mut records: Vec<ImportedRecord>,
 ) -> Result<(), Problem> {
-    let mut of_copies: Vec<OriginFile> = Vec::new();
-    let mut copy = |outputs: &mut Outputs, file: &Copied| -> Result<(), Problem> {
-        of_copies.push(OriginFile {
-            path: file.written.value.clone(),
-            sha256: crate::data::hash::sha256(&file.bytes),
-        });
-        outputs.add(&file.inside, &file.bytes)
+    let mut sources: Vec<OriginFile> = sources.iter().map(|source| source.file.clone()).collect();
+    let mut copy = |outputs: &mut Outputs, file: Copied| -> Result<OriginFile, Problem> {
+        outputs.add(&file.inside, &file.bytes)?;
+        let inside = OriginFile { path: file.inside, sha256: sha256(&file.bytes) };
+        sources.push(OriginFile { path: file.written.value, ..inside.clone() });
+        Ok(inside)
     };
     for file in small_files(mapping)? {
-        copy(outputs, &file)?;
+        copy(outputs, file)?;
     }
     if let Some(pattern) = &mapping.track {
         for name in &mapping.sections.names {
-            let written = mapping.sections.fill(&pattern.value, &name.value);
-            copy(outputs, &copied(mapping, pattern, &written, track_path(pattern, &name.value))?)?;
+            let file = mapping.sections.fill(&pattern.value, &name.value);
+            let copied = copied(mapping, pattern, &file, track_path(pattern, &name.value))?;
+            records.push(ImportedRecord {
+                side: RecordKind::Track.key().into(),
+                section: name.value.clone(),
+                file,
+                read_as: "copied".into(),
+                steps: Vec::new(),
+                written: Some(copy(outputs, copied)?),
+            });
         }
     }
     let tree = campaign_tree(mapping, format);
     let text = campaign_yaml_with(&tree, &[], &[(ORIGIN_KEY, Entry::Text(ORIGIN_FILE))]);
     outputs.add(CAMPAIGN_FILE, text.as_bytes())?;
-    let sources = sources.iter().map(|source| source.file.clone());
     let origin = Origin {
         program: Literal(concat!("fishplate ", env!("CARGO_PKG_VERSION")).to_string()),
         command: Literal("import".into()),
         campaign: Literal(mapping.name.value.clone()),
-        sources: sources.chain(of_copies).collect(),
+        sources,
         imported: Some(Imported {
             mapping: Literal(mapping.source.text.replace("\r\n", "\n")),
             channels: channels(mapping),
             records,
-            written: written(outputs),
         }),
         ..Origin::default()
     };
     outputs.add(ORIGIN_FILE, origin.text().as_bytes())
-}
-
-/// The SHA-256 of the records, by side and name.
-fn written(outputs: &Outputs) -> IndexMap<String, IndexMap<String, String>> {
-    let mut all: IndexMap<String, IndexMap<String, String>> = IndexMap::new();
-    for (path, sha256) in outputs.hashes() {
-        if let Some((side, name)) = path.split_once('/') {
-            all.entry(side.into()).or_default().insert(name.into(), sha256.into());
-        }
-    }
-    all
 }
 
 /// The track file of a section or a run in the campaign; it keeps its format.

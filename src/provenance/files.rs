@@ -2,13 +2,12 @@
 
 use std::path::PathBuf;
 
-use indexmap::IndexMap;
-
 use super::carried::{Carried, REPORT, REPORT_HTML, REPORT_PDF};
 use super::check::Check;
 use super::pdf::{Written, written};
 use crate::data::campaign::Changed;
 use crate::data::fingerprint::fingerprint;
+use crate::data::origin::OriginFile;
 use crate::data::text::read_bytes;
 use crate::data::{Campaign, RecordKind};
 use crate::problem::Problems;
@@ -110,16 +109,14 @@ pub fn pages(
 /// campaign says why they were edited. `None` if none was imported.
 pub fn as_imported(campaign: &Campaign) -> Option<Check> {
     const NAME: &str = "import";
-    let written = &campaign.origin.as_ref()?.imported.as_ref()?.written;
-    if written.is_empty() {
-        return Some(Check::not_asked(NAME, "origin.yaml has no hashes of the records"));
-    }
-    let (mut details, mut edited) = (Vec::new(), 0);
+    let origin = campaign.origin.as_ref()?;
+    origin.imported.as_ref()?;
+    let (mut details, mut all, mut edited) = (Vec::new(), 0, 0);
     for kind in RecordKind::ALL {
-        for name in written.get(kind.key()).into_iter().flat_map(IndexMap::keys) {
-            let path = format!("{}/{name}", kind.key());
-            match fingerprint(campaign.folder(), &path) {
-                Ok(Some((hash, _))) => match campaign.changed(kind, &path, &hash) {
+        for OriginFile { path, .. } in origin.imported_records(kind.key()) {
+            all += 1;
+            match fingerprint(campaign.folder(), path) {
+                Ok(Some((hash, _))) => match campaign.changed(kind, path, &hash) {
                     Some(Changed { reason: None, .. }) => details.push(format!("changed: {path}")),
                     Some(_) => edited += 1,
                     None => {}
@@ -129,7 +126,9 @@ pub fn as_imported(campaign: &Campaign) -> Option<Check> {
             }
         }
     }
-    let all: usize = written.values().map(IndexMap::len).sum();
+    if all == 0 {
+        return Some(Check::not_asked(NAME, "origin.yaml has no hashes of the records"));
+    }
     let agrees = match edited {
         0 => format!("{all} records are those that the import wrote"),
         edited => format!("{all} records, {edited} of them edited, as campaign.yaml says"),

@@ -75,8 +75,9 @@ impl Made<'_> {
         let before = campaign.origin.as_ref().map(|origin| &origin.campaign.0);
         let first = before.filter(|name| !name.is_empty());
         let mut imported = campaign.origin.as_ref().and_then(|origin| origin.imported.clone());
-        if let Some(imported) = &mut imported {
-            imported.written.shift_remove(RecordKind::Simulation.key());
+        let records = imported.iter_mut().flat_map(|imported| &mut imported.records);
+        for record in records.filter(|record| record.side == RecordKind::Simulation.key()) {
+            record.written = None;
         }
         Ok(Origin {
             program: Literal(concat!("fishplate ", env!("CARGO_PKG_VERSION")).to_string()),

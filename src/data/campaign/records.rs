@@ -331,12 +331,14 @@ impl Campaign {
     /// How a record differs from the one that an import wrote; `None` if it does not, or no import
     /// wrote records of its kind.
     pub fn changed(&self, kind: RecordKind, path: &str, sha256: &str) -> Option<Changed> {
-        let written = self.origin.as_ref()?.written(kind.key(), path)?;
+        let mut written = self.origin.as_ref()?.imported_records(kind.key()).peekable();
+        written.peek()?;
+        let written = written.find(|record| record.path == path);
         // The format may have changed since.
         let same = |edited: &&Edited| Format::stem(&edited.record.value) == Format::stem(path);
         let reason = || self.edited.iter().find(same).map(|edited| edited.reason.clone());
         let changed = || Changed { imported: written.is_some(), reason: reason() };
-        (written != Some(sha256)).then(changed)
+        (!written.is_some_and(|record| record.sha256 == sha256)).then(changed)
     }
 }
 

@@ -52,9 +52,10 @@ impl Case {
 /// The first measured record.
 fn record(case: &Case) -> String {
     let origin = fs::read_to_string(case.campaign().join("origin.yaml")).expect("readable");
-    let written = origin.split_once("written:\n").expect("hashes").1;
-    let name = written.split_once("measurement:\n").expect("a side").1.trim_start();
-    format!("measurement/{}", name.split_once(':').expect("a name").0)
+    let origin: serde_yaml::Value = serde_yaml::from_str(&origin).expect("YAML");
+    let written = &origin["records"][0];
+    assert!(written["sha256"].as_str().is_some_and(|hash| hash.len() == 64), "{written:?}");
+    written["path"].as_str().expect("a path").into()
 }
 
 #[test]
