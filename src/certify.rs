@@ -14,7 +14,7 @@ use crate::graph::{self, Graph};
 use crate::problem::{Problems, error};
 use crate::result::{
     CampaignInfo, Certification, ChannelInfo, DataItem, FORMAT, FileHash, FilterInfo, Kind,
-    OriginInfo, ParameterInfo, ProtocolFile, ProtocolInfo, Remark, THIS,
+    OriginInfo, ParameterInfo, ProtocolFile, ProtocolInfo, Remark, Removed, THIS,
 };
 use crate::run::{self, Outcome, Progress, Settings};
 use crate::syntax::document::Block;
@@ -113,6 +113,7 @@ pub fn certification(compiled: &Compiled, about: &About, outcome: Outcome) -> Ce
         verdict: judged.verdict,
         own_word: judged.own_word,
         verdict_note: campaign.origin.as_ref().and_then(OriginInfo::note),
+        removed: Removed::of(&outcome.sections, &campaign.outside_table),
         campaign,
         reasons: judged.reasons,
         provisional: values.provisional.clone(),
@@ -169,12 +170,19 @@ pub fn protocol_info(compiled: &Compiled) -> ProtocolInfo {
         scope: plan.scope.clone(),
         notes: plan.notes.clone(),
         sha256: all.finish(),
-        origin: Some(origin::origin(family)),
+        own: origin::own(family),
+        shipped_edition: origin::shipped_edition(family),
         files,
         deviations: family
             .parent()
             .map_or_else(Vec::new, |parent| diff::diff(parent, &family.merged)),
         parameters: plan.parameters.iter().map(parameter_info).collect(),
+        parameters_off_default: plan
+            .parameters
+            .iter()
+            .filter(|one| one.set_by != SetBy::Default && one.value != one.default)
+            .map(parameter_info)
+            .collect(),
         filters: plan
             .filters
             .iter()

@@ -1,6 +1,6 @@
 //! What was done differently than the standard and the protocol say.
 
-use crate::check::plan::{Parameter, Plan, SetBy};
+use crate::check::plan::Plan;
 use crate::result::{Departed, DeviationFrom, Finding, FindingData, ProtocolInfo, Remark};
 
 /// All deviations; of the remarks of a run, those that are some are taken out.
@@ -14,8 +14,9 @@ pub fn all(
     let changed = Some(protocol.deviations.len()).filter(|rules| *rules > 0);
     let changed = changed.map(|rules| Remark::RulesChanged { rules });
     let unchecked = notes.extract_if(.., |note| matches!(note, Remark::Unchecked { .. }));
-    let of_protocol =
-        changed.into_iter().chain(parameters_set(plan)).chain(unchecked).chain(edited(findings));
+    let parameters = protocol.parameters_off_default.clone();
+    let set = (!parameters.is_empty()).then_some(Remark::ParametersSet { parameters });
+    let of_protocol = changed.into_iter().chain(set).chain(unchecked).chain(edited(findings));
     let from = |from| move |what| DeviationFrom { from, what };
     left_out
         .map(from(Departed::Standard))
@@ -31,14 +32,4 @@ fn edited(findings: &[Finding]) -> impl Iterator<Item = Remark> {
         }
         _ => None,
     })
-}
-
-/// Parameters with values other than the default, since the verdict depends on them.
-fn parameters_set(plan: &Plan) -> Option<Remark> {
-    let set = |parameter: &&Parameter| {
-        parameter.set_by != SetBy::Default && parameter.value != parameter.default
-    };
-    let parameters: Vec<_> =
-        plan.parameters.iter().filter(set).map(super::parameter_info).collect();
-    (!parameters.is_empty()).then_some(Remark::ParametersSet { parameters })
 }

@@ -4,7 +4,7 @@ use crate::check::diff::{self, Change};
 use crate::check::family::Family;
 use crate::library;
 use crate::problem::Problems;
-use crate::result::ProtocolOrigin;
+use crate::result::OwnProtocol;
 use crate::syntax;
 use crate::syntax::document::Text;
 
@@ -27,21 +27,31 @@ fn edition(family: &Family, at: usize) -> Option<usize> {
     })
 }
 
-pub fn origin(family: &Family) -> ProtocolOrigin {
-    let shipped =
-        |from: usize| (from..family.sources.len()).all(|at| edition(family, at).is_some());
-    if let Some(edition) = edition(family, 0).filter(|_| shipped(0)) {
-        return ProtocolOrigin::ShippedProtocol { edition };
+/// Whether all texts are or were shipped, from one of them on.
+fn is_shipped(family: &Family, from: usize) -> bool {
+    (from..family.sources.len()).all(|at| edition(family, at).is_some())
+}
+
+/// The edition in which the protocol was shipped with all that it extends and uses.
+pub fn shipped_edition(family: &Family) -> Option<usize> {
+    edition(family, 0).filter(|_| is_shipped(family, 0))
+}
+
+/// How the protocol differs from a shipped one, if it does.
+pub fn own(family: &Family) -> Option<OwnProtocol> {
+    if shipped_edition(family).is_some() {
+        return None;
     }
     let ancestors = &family.ancestors;
-    let known = ancestors.iter().find(|one| shipped(one.from)).or_else(|| ancestors.first());
+    let known = ancestors.iter().find(|one| is_shipped(family, one.from));
+    let known = known.or_else(|| ancestors.first());
     let changes = known.map_or_else(Vec::new, |known| diff::changes(&known.merged, &family.merged));
     let relaxed = changes.iter().filter(|change| change.relaxes());
     let name = known.and_then(|known| family.names.get(known.from)?.as_ref());
-    ProtocolOrigin::OwnProtocol {
+    Some(OwnProtocol {
         extends: name.map(|name| name.text.clone()),
         changed: changes.len(),
         relaxed: relaxed.map(|Change { deviation, .. }| deviation.rule.clone()).collect(),
         taken: taken_names(family).next().map(|name| name.text.clone()),
-    }
+    })
 }

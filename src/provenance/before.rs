@@ -83,12 +83,15 @@ pub fn upgrade(results: &mut Value) {
     }
 }
 
-/// What results of this format did not state at first: the path and the key.
-const LATER: [(&str, &str); 4] = [
-    ("", "provisional"),
-    ("", "deviations"),
-    ("protocol", "origin"),
-    ("campaign", "outside_table"),
+/// What results of this format did not state at first.
+const LATER: [&str; 7] = [
+    "/provisional",
+    "/deviations",
+    "/protocol/own",
+    "/protocol/shipped_edition",
+    "/protocol/parameters_off_default",
+    "/campaign/outside_table",
+    "/removed",
 ];
 
 /// Removes from results what those before do not state, of what may be missing, and adds the notes
@@ -99,11 +102,9 @@ pub fn without_later(now: &mut Value, before: &Value) {
             notes.insert(at.min(notes.len()), note);
         }
     }
-    for (path, key) in LATER {
-        let within = if path.is_empty() { Some(before) } else { before.get(path) };
-        if within.and_then(|within| within.get(key)).is_none() {
-            each(now, path, &mut |entry| drop(entry.shift_remove(key)));
-        }
+    for pointer in LATER.into_iter().filter(|pointer| before.pointer(pointer).is_none()) {
+        let (parent, key) = pointer.rsplit_once('/').unwrap_or_default();
+        each(now, parent.trim_start_matches('/'), &mut |entry| drop(entry.shift_remove(key)));
     }
 }
 

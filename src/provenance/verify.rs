@@ -16,7 +16,7 @@ use crate::data::hash::sha256;
 use crate::data::{Campaign, Campaigns};
 use crate::problem::{Problem, Problems};
 use crate::result::confirmation::Signed;
-use crate::result::{self, Certification, ConfirmedValue, Kind, ProtocolOrigin, THIS};
+use crate::result::{self, Certification, ConfirmedValue, Kind, THIS};
 use crate::run::Settings;
 use crate::run::find;
 use crate::run::replay::replay;
@@ -65,14 +65,15 @@ pub fn alone(carried: &Carried, given: Option<&Family>) -> (Vec<Check>, Option<C
 /// Whose protocol it is, by its texts and not by what the report says.
 fn whose(compiled: &Compiled) -> Option<Check> {
     const NAME: &str = "protocol";
-    let origin = protocol_info(compiled).origin?;
-    Some(match &origin {
-        ProtocolOrigin::OwnProtocol { taken: Some(_), .. } => {
-            let says = "a text has a shipped name and another content";
-            Check::differs(NAME, says, vec![origin.text().into()])
-        }
-        _ => Check::agrees(NAME, origin.text()),
-    })
+    let found = protocol_info(compiled);
+    let Some(own) = &found.own else {
+        return Some(Check::agrees(NAME, format!("shipped, edition {}", found.shipped_edition?)));
+    };
+    if own.taken.is_some() {
+        let says = "a text has a shipped name and another content";
+        return Some(Check::differs(NAME, says, vec![own.text().into()]));
+    }
+    Some(Check::agrees(NAME, own.text()))
 }
 
 fn with_help(problem: &Problem) -> String {

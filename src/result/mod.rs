@@ -105,6 +105,8 @@ pub struct Certification {
     pub verdicts: Vec<VerdictResult>,
     pub quantities: Vec<QuantityResult>,
     pub sections: Vec<SectionResult>,
+    #[serde(default)]
+    pub removed: Removed,
     /// Numbers of the data of the sections used, which the protocol reports.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub reported: Vec<Reported>,
@@ -139,10 +141,16 @@ pub struct ProtocolInfo {
     pub name: String,
     pub title: String,
     pub sha256: String,
-    /// Whose it is; not stated by versions before.
+    /// What differs from a shipped protocol; `None` for a shipped one.
+    #[serde(default)]
+    pub own: Option<OwnProtocol>,
+    /// The edition of a shipped protocol.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub origin: Option<ProtocolOrigin>,
+    pub shipped_edition: Option<usize>,
     pub parameters: Vec<ParameterInfo>,
+    /// Those with another value than their default, which somebody set.
+    #[serde(default)]
+    pub parameters_off_default: Vec<ParameterInfo>,
     /// Differences in meaning from the parent, rule by rule; empty without a parent.
     pub deviations: Vec<Deviation>,
     /// The files of the protocol: the protocol first, then its parent, and so on.
@@ -166,23 +174,20 @@ pub struct ProtocolInfo {
     pub graph_svg: String,
 }
 
-/// Whose protocol it is.
+/// A protocol with a text that is not shipped with the program.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(tag = "code", rename_all = "kebab-case")]
-pub enum ProtocolOrigin {
-    /// All its texts are or were shipped with the program; the edition of the first.
-    ShippedProtocol { edition: usize },
-    /// A text of its own: how many rules differ from the protocol that it extends, and which of
-    /// them ask for less. `taken`: a shipped name that one of its texts gives itself.
-    OwnProtocol {
-        extends: Option<String>,
-        changed: usize,
-        relaxed: Vec<String>,
-        taken: Option<String>,
-    },
+#[serde(tag = "code", rename = "own-protocol")]
+pub struct OwnProtocol {
+    pub extends: Option<String>,
+    /// Number of rules that differ from the protocol that it extends.
+    pub changed: usize,
+    /// Those of them that ask for less.
+    pub relaxed: Vec<String>,
+    /// A shipped name that one of its texts gives itself.
+    pub taken: Option<String>,
 }
 
-impl ProtocolOrigin {
+impl OwnProtocol {
     pub fn text(&self) -> words::Text {
         words::text(self)
     }
@@ -397,6 +402,27 @@ impl SectionResult {
         !self.used
             && (self.checks.iter().any(by_protocol)
                 || self.reason.as_ref().is_some_and(Reason::is_choice))
+    }
+}
+
+/// Numbers of sections.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct Removed {
+    pub used: usize,
+    /// Not used for what their data or records are.
+    pub removed: usize,
+    /// Of which there are records, but no row in the table of sections.
+    pub left_out: usize,
+}
+
+impl Removed {
+    pub fn of(sections: &[SectionResult], outside_table: &[String]) -> Self {
+        let count = |is: fn(&&SectionResult) -> bool| sections.iter().filter(is).count();
+        Self {
+            used: count(|section| section.used),
+            removed: count(|section| !section.used && !section.is_deselected()),
+            left_out: outside_table.len(),
+        }
     }
 }
 

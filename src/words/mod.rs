@@ -133,9 +133,7 @@ mod tests {
     use serde::de::DeserializeOwned;
 
     use super::*;
-    use crate::result::{
-        Channels, FindingData, ProtocolOrigin, Reason, Remark, Sections, Unmatched, VehicleValue,
-    };
+    use crate::result::{Channels, FindingData, Reason, Remark, Sections, Unmatched, VehicleValue};
 
     /// A value for a field, whatever its type: the first that fits.
     const FITS: [&str; 14] = [
@@ -195,10 +193,12 @@ mod tests {
         let mut all = examples::<Reason>();
         all.extend(examples::<FindingData>());
         all.extend(examples::<Remark>());
-        all.extend(examples::<ProtocolOrigin>());
         all.extend(examples::<Unmatched>());
         all.extend(examples::<VehicleValue>());
         all.push(serde_json::to_value(Sections::of(&["S01"], 2)).expect("data"));
+        all.push(serde_json::json!({
+            "code": "own-protocol", "extends": "a", "changed": 1, "relaxed": ["b"], "taken": null,
+        }));
         all.push(serde_json::to_value(Channels::of(&["Y"])).expect("data"));
         all.push(serde_json::json!({
             "code": "suspected-factor", "by": 9.8, "of_unit": true, "units": ["kgf", "N"], "inverse": true,

@@ -97,6 +97,7 @@ pub fn certification() -> Certification {
         provisional: Vec::new(),
         confirmed: Vec::new(),
         draft: false,
+        removed: Removed::default(),
         deviations: Vec::new(),
         reasons,
         verdicts: Vec::new(),
@@ -219,7 +220,9 @@ pub fn empty() -> Certification {
         protocol: ProtocolInfo {
             name: "empty".into(),
             title: String::new(),
-            origin: None,
+            own: None,
+            shipped_edition: None,
+            parameters_off_default: Vec::new(),
             edition: None,
             source: None,
             scope: None,
@@ -251,6 +254,7 @@ pub fn empty() -> Certification {
         provisional: Vec::new(),
         confirmed: Vec::new(),
         draft: false,
+        removed: Removed::default(),
         deviations: Vec::new(),
         reasons: Vec::new(),
         verdicts: Vec::new(),
@@ -706,7 +710,9 @@ fn protocol() -> ProtocolInfo {
     ProtocolInfo {
         name: "en14363-2016-annex-t-coach".into(),
         title: "EN 14363:2016, Annex T, with a tighter limit".into(),
-        origin: None,
+        own: None,
+        shipped_edition: None,
+        parameters_off_default: Vec::new(),
         edition: Some("EN 14363:2016".into()),
         source: Some("Götz and Polach 2018, Table 1".into()),
         scope: Some(

@@ -136,6 +136,7 @@ pub fn certification() -> Certification {
         provisional: Vec::new(),
         confirmed: Vec::new(),
         draft: false,
+        removed: fishplate::result::Removed::default(),
         deviations: Vec::new(),
         verdicts: Vec::new(),
         reasons: vec![
@@ -544,7 +545,9 @@ fn protocol() -> ProtocolInfo {
     ProtocolInfo {
         name: "annex_t_variant".into(),
         title: "Model validation, Method 1 with a stricter limit".into(),
-        origin: None,
+        own: None,
+        shipped_edition: None,
+        parameters_off_default: Vec::new(),
         edition: Some("EN 14363:2016".into()),
         source: Some("EN 14363:2016, Annex T".into()),
         scope: Some("On-track tests of vehicles with bogies".into()),

@@ -6,7 +6,9 @@ use super::{View, campaign, identity, statistic, verdicts, wording};
 use crate::report::document::*;
 use crate::report::number::{self, raised};
 use crate::report::rules;
-use crate::result::{CampaignInfo, Certification, Kind, ProtocolInfo, QuantityResult, Verdict};
+use crate::result::{
+    CampaignInfo, Certification, Kind, ProtocolInfo, QuantityResult, Removed, Verdict,
+};
 
 /// Reasons on the cover, and where a table of verdicts takes their room; the summary lists all.
 const REASONS: usize = 8;
@@ -206,14 +208,11 @@ fn identification(view: &View<'_>) -> Vec<Block> {
 
 /// `12 used, 2 removed, 3 left out of the table`.
 fn sections(found: &Certification) -> String {
-    let used = found.sections.iter().filter(|section| section.used).count();
-    let deselected = found.sections.iter().filter(|section| section.is_deselected()).count();
-    let removed = found.sections.len() - used - deselected;
-    let others = [
-        (removed, "removed"),
-        (deselected, "not selected"),
-        (found.campaign.outside_table.len(), "left out of the table"),
-    ];
+    let Removed { used, removed, left_out } =
+        Removed::of(&found.sections, &found.campaign.outside_table);
+    let deselected = found.sections.len().saturating_sub(used + removed);
+    let others =
+        [(removed, "removed"), (deselected, "not selected"), (left_out, "left out of the table")];
     let others = others.iter().filter(|(count, _)| *count > 0);
     let others = others.map(|(count, what)| format!(", {count} {what}"));
     format!("{used} of {} used{}", found.sections.len(), others.collect::<String>())
