@@ -116,7 +116,7 @@ fn nothing_is_told_of_sound_variations() {
         .enumerate()
         .filter(|(n, variation)| {
             *n < 3
-                || ["Wagon: wind of 15 kN on both", "Railcar: load", "Coach: unmodelled friction"]
+                || ["Wagon, wind of 15 kN on both", "Railcar, load", "Coach, unmodelled friction"]
                     .iter()
                     .any(|part| variation.name.contains(part))
         })

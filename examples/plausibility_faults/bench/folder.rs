@@ -189,7 +189,8 @@ impl Folder {
         &self.origin.path
     }
 
-    /// Writes it; records that were not changed are links to those of the origin.
+    /// Writes it; records that were not changed are links to those of the origin, or stay where it
+    /// is written to the origin itself.
     pub fn write(&self, path: &Path) {
         let open = |name: &str| {
             let file = path.join(name);
@@ -200,7 +201,7 @@ impl Folder {
             self.origin.records.keys().filter(|name| !self.records.contains_key(name.as_str()));
         for name in unchanged.chain(&self.origin.others) {
             let (from, to) = (self.origin.path.join(name), open(name));
-            if fs::hard_link(&from, &to).is_err() {
+            if from != to && fs::hard_link(&from, &to).is_err() {
                 fs::copy(&from, &to).expect("copied");
             }
         }

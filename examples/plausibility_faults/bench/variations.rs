@@ -48,7 +48,7 @@ pub fn all(bases: &[String], seed: u64) -> Vec<Variation> {
     let mut all = Vec::new();
     for (base, name) in bases.iter().enumerate() {
         let mut add = |what: &str, change: fn(&mut Folder)| {
-            let name = format!("{name}: {what}");
+            let name = format!("{name}, {what}");
             all.push(Variation { name, wind: false, from: From::Changed(base, change) });
         };
         add("as it is", |_| {});
@@ -69,7 +69,7 @@ fn made(recipe: Recipe) -> Variation {
 }
 
 fn recipe(draw: &mut Draw, name: String, design: &'static Design) -> Recipe {
-    Recipe { name: format!("{}: {name}", design.name), ..Recipe::of("", design, draw.seed()) }
+    Recipe { name: format!("{}, {name}", design.name), ..Recipe::of("", design, draw.seed()) }
 }
 
 /// Wind of 10, 15 and 25 kN, on both sides or only in the measurement.
