@@ -332,11 +332,11 @@ check full_curve "Section lies in full curve or on straight track"
   note       "Requires the track file; the tolerance is this protocol's own."
 
 plausibility exchanged
-  exchanged  from 0.6, by 0.3, alike from 0.7
+  exchanged  from 0.6, by 0.3
   note       "Forces of neighbouring wheels are alike: in sound sections a channel agrees with another one"
-             "better than with its own by at most 0.04. Over all channels, records of six sound campaigns have"
-             "correlations of 0.62 to 0.95 with their own simulation, and of at most 0.29 with records of other"
-             "sites, which have other irregularities: the same ones are one curve that counts twice."
+             "better than with its own by at most 0.04. Over all channels, records of six sound campaigns"
+             "have correlations of 0.62 to 0.95 with their own simulation, and of at most 0.29 with records"
+             "of other sites, which have other irregularities."
 
 plausibility copied_section "Noise that both sides share in one section"
   of         Y
@@ -674,8 +674,8 @@ plausibility noise "Noise of a channel"
   cause    "interference in the measuring chain, or a sensor that is not connected"
   note     "Noise of more than 60 % of the standard deviation hides the signal. In 138 sound sections at 200"
            "Hz it is at most 41 % for Q and 20 % for accelerations. At 100 Hz the signal itself changes from"
-           "sample to sample, in all channels alike. Guiding forces on straight track are small against"
-           "their noise and are not checked."
+           "sample to sample, in all channels alike. Guiding forces on straight track are small against their"
+           "noise and are not checked."
 
 plausibility freight_suspension "Category and suspension"
   require  not (vehicle.category is freight and vehicle.secondary_suspension)

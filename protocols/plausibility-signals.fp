@@ -18,14 +18,15 @@ plausibility copies "Copies of records"
 
 plausibility live "Constant channel"
   of         every channel
-  require    held <= 5 % or resolution > 0.3 * std
+  require    held <= 5 % or resolution > 0.1 * std
   otherwise  not used
   cause      "a channel without a signal, or an interrupted one"
-  note       "In a working channel, the longest run of equal samples is at most 2 % of a section."
+  note       "In a working channel, the longest run of equal samples is at most 2 % of a section. With"
+             "few decimals, a quiet channel has longer ones."
 
 plausibility saturated "Saturated channel"
   of         every channel
-  require    at_extreme <= 2 % or held >= 0.8 * at_extreme or resolution > 0.3 * std
+  require    at_extreme <= 2 % or held >= 0.8 * at_extreme or resolution > 0.1 * std
   otherwise  not used
   cause      "a recorder or sensor at the end of its range"
   note       "A working channel is at its largest or smallest value in less than 1 % of the samples. A single"
@@ -44,7 +45,8 @@ plausibility exchanged "Records and channels that belong together"
   exchanged  from 0.6, by 0.3
   concerns   record
   otherwise  not used
-  cause      "exchanged or copied channels, wheelsets, sides or sections of one of the records; a turned vehicle"
+  cause      "exchanged or copied channels, wheelsets, sides or sections of one of the records; a turned"
+             "vehicle"
   note       "Forces of neighbouring wheels are alike: in sound sections a channel agrees with another one"
              "better than with its own by at most 0.04."
 

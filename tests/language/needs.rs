@@ -169,7 +169,7 @@ fn each_need_has_its_unit_and_users() {
             &find("vehicle", "admissible_speed")["default"],
             &find("vehicle", "admissible_speed")["required"]
         ),
-        (&"not stated".into(), &false.into())
+        (&"not stated".into(), &true.into())
     );
     let ran = fishplate(&["explain", PROTOCOL, "--stage", "needs", "--format", "csv"]);
     assert!(

@@ -68,13 +68,14 @@ pub struct Plausibility {
 }
 
 impl Plausibility {
-    /// The order of findings: first those of whole records, then those that a channel shows by
-    /// itself, then those that need something else to compare it with.
+    /// The order of findings: first those of whole records, then sizes that are wrong by a factor,
+    /// then what a channel shows by itself, then what needs something else to compare it with.
     pub fn rank(&self) -> u8 {
         match &self.test {
             _ if self.concerns_record => 0,
-            Test::Require(requirement) if requirement.of_one_channel(&self.signals) => 1,
-            _ => 2,
+            Test::Require(requirement) if requirement.of_size() => 1,
+            Test::Require(requirement) if requirement.of_one_channel(&self.signals) => 2,
+            _ => 3,
         }
     }
 
@@ -108,6 +109,13 @@ pub struct Requirement {
 }
 
 impl Requirement {
+    /// Whether one record of a channel is compared with the other within a factor.
+    fn of_size(&self) -> bool {
+        let factor = |one: &Comparison| matches!(one.relation, Relation::WithinFactor);
+        let both = self.inputs.array_windows().any(|[a, b]| a.side != b.side);
+        both && !self.compared.is_empty() && self.compared.iter().all(factor)
+    }
+
     /// Whether it is on samples of one channel of one record alone, whatever vehicle and section
     /// are.
     fn of_one_channel(&self, signals: &[(String, Expr)]) -> bool {

@@ -11,6 +11,10 @@ const RUN: usize = 8;
 /// One run of samples in this many becomes a mark. It is chosen by its content, so that the same
 /// runs are chosen wherever they are in a record.
 const ONE_IN: u64 = 16;
+/// Fewest different values of a mark: of a smooth signal with few decimals, most runs of samples
+/// have fewer, and such runs are equal by chance.
+const DIFFERENT: usize = 6;
+
 /// Marks of one signal in one section.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Print {
@@ -44,8 +48,8 @@ impl Print {
 /// Samples whose runs are hashed together: the hashes stay in the first-level cache.
 const TOGETHER: usize = 256;
 
-/// Marks of a signal: hashes of runs of samples. Constant runs are equal everywhere and give no
-/// mark; another rule reports them.
+/// Marks of a signal: hashes of runs of samples. Runs of few values are equal in many places and
+/// give no mark.
 fn marks(samples: &[f64]) -> Vec<u32> {
     let mut found = Vec::with_capacity(2 * samples.len() / ONE_IN as usize);
     let mut hashes = [0; TOGETHER + RUN];
@@ -62,12 +66,17 @@ fn marks(samples: &[f64]) -> Vec<u32> {
             }
         }
         for (run, samples) in hashes.iter().zip(part.windows(RUN)) {
-            if run.is_multiple_of(ONE_IN) && samples.iter().any(|value| *value != samples[0]) {
+            if run.is_multiple_of(ONE_IN) && different(samples) >= DIFFERENT {
                 found.push(shortened(mixed(*run)));
             }
         }
     }
     found
+}
+
+/// The number of different values of a run.
+fn different(run: &[f64]) -> usize {
+    run.iter().enumerate().filter(|(at, value)| !run[..*at].contains(value)).count()
 }
 
 /// Of consecutive samples, the hash of one is turned by so many bits against that of the next.
