@@ -7,10 +7,10 @@
 //! removed, that names the channel, side, wheelset, section or folder concerned and that the
 //! campaign without the fault does not have.
 //!
-//! `--seed N` draws others; `--list` prints every fault and what was told first, and what was told of
-//! sound variations; `--each N` sets the number of faults of a mechanism; `--only TEXT` draws kinds
-//! whose name contains it, and nothing else; `--program PATH` evaluates the same faults with another
-//! program through its command line.
+//! `--seed N` draws others; `--list` prints every fault and what was told first, and what was told
+//! of sound variations; `--each N` sets the number of faults of a mechanism; `--only TEXT` draws
+//! kinds whose name contains it, and nothing else; `--program PATH` evaluates the same faults with
+//! another program through its command line.
 
 #![allow(
     clippy::print_stdout,

@@ -5,7 +5,8 @@ use super::fault::{Draw, Fault, Size, Told, own};
 use super::folder::{Folder, SECTIONS, Side};
 use super::signal::each;
 
-/// Codes of a cell that is not a number, in records and tables, and of a section without its record.
+/// Codes of a cell that is not a number, in records and tables, and of a section whose record
+/// cannot be read.
 const NUL: &[&str] = &["not-a-number", "unreadable", "said", "wrong-cell", "nul-bytes"];
 const CELL: &[&str] = &["not-a-number", "unreadable", "said"];
 const SPIKES: &[&str] = &["spikes"];

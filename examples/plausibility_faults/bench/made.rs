@@ -245,7 +245,7 @@ fn vehicle(recipe: &Recipe) -> Result<Vehicle, String> {
 
 /// Radii of the curves of a zone in m.
 const RADII: [(f64, f64); 4] = [(0.0, 0.0), (700.0, 2200.0), (405.0, 595.0), (260.0, 395.0)];
-/// Lengths of the sections of a zone in m, and the admissible speed in km/h up to which they suffice.
+/// Admissible speed in km/h up to which these lengths of the sections of a zone, in m, suffice.
 const FASTEST: f64 = 140.0;
 const LENGTHS: [f64; 4] = [260.0, 110.0, 105.0, 75.0];
 /// Largest and smallest cant of a curve in mm.
