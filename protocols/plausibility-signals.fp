@@ -21,8 +21,8 @@ plausibility live "Constant channel"
   require    held <= 5 % or resolution > 0.1 * std
   otherwise  not used
   cause      "a channel without a signal, or an interrupted one"
-  note       "In a working channel, the longest run of equal samples is at most 2 % of a section. With"
-             "few decimals, a quiet channel has longer ones."
+  note       "In a working channel, the longest run of equal samples is at most 2 % of a section. With few"
+             "decimals, a quiet channel has longer ones."
 
 plausibility saturated "Saturated channel"
   of         every channel
