@@ -393,11 +393,11 @@ plausibility aligned "Records at the same place"
             "the synchronisation."
 
 plausibility running_speed "Speed from distance and time against the table of sections"
-  require    range of running_distance / range of clock near speed within 1.5 %
+  require    range of running_distance / range of clock near speed within 3 %
   concerns   record
   otherwise  not used
   cause      "the clock, the scale of the distance, or the speed of the table"
-  note       "A section is run at constant speed; in sound campaigns it is within 0.6 % of the table."
+  note       "A section is run at constant speed. A table with nominal speeds may be off by 2 km/h."
 
 plausibility table_of_curves "Cant deficiency against speed, radius and cant"
   require    |cant_deficiency| near |1500 mm * (speed^2 / radius / 9.80665 m/s^2) - cant| within 15 mm

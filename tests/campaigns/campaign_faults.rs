@@ -284,7 +284,7 @@ fn one_faulty_section_is_not_used() {
         (
             "Q is zero",
             |campaign| cell(&campaign.join(M), 300, "Q_1R [kN]", "0.00"),
-            "Ratio Y/Q below the limit of flange climbing: measurement/S01.csv: Q_1R drops out: zero in 1 of 826 samples, first in row 301; others are divided by it (Y_1R / Q_1R)",
+            "Samples out of line; required: spike <= larger of (larger of 9 * noise_floor, 1.3 * std), 3 * siblings(spike) or resolution > 0.3 * std or repeated > 25 %",
         ),
     ];
     for (case, change, reason) in cases {

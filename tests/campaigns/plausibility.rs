@@ -172,8 +172,8 @@ fn a_finding_with_two_bounds_has_its_value() {
             values.iter().map(|y| 100.0 * y).collect()
         })
     });
-    let finding =
-        found.findings.iter().find(|finding| finding.code == "acceleration_level").expect("told");
+    let mut all = found.findings.iter().flat_map(Finding::with_explained);
+    let finding = all.find(|finding| finding.code == "acceleration_level").expect("told");
     assert!(
         finding.first.value.expect("a number") > 2.0 && finding.first.expected == Some(2.0),
         "{finding:?}"

@@ -68,14 +68,17 @@ pub struct Plausibility {
 }
 
 impl Plausibility {
-    /// The order of findings: first those of whole records, then sizes that are wrong by a factor,
-    /// then what a channel shows by itself, then what needs something else to compare it with.
+    /// The order of findings: first those of whole records, then what a channel shows by itself or
+    /// by its size, then those that need something else to compare it with.
     pub fn rank(&self) -> u8 {
         match &self.test {
             _ if self.concerns_record => 0,
-            Test::Require(requirement) if requirement.of_size() => 1,
-            Test::Require(requirement) if requirement.of_one_channel(&self.signals) => 2,
-            _ => 3,
+            Test::Require(requirement)
+                if requirement.of_size() || requirement.of_one_channel(&self.signals) =>
+            {
+                1
+            }
+            _ => 2,
         }
     }
 
