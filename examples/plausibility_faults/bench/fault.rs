@@ -28,13 +28,16 @@ pub enum Size {
     Fact(f64),
 }
 
+/// Puts a fault of a size into a campaign.
+pub type Put = Box<dyn Fn(&mut Folder, f64) + Send + Sync>;
+
 pub struct Fault {
     pub says: String,
     pub size: Size,
     pub told: Told,
     /// Rules that name the right cause, and codes of the program; see [`super::score::score`].
     pub right: &'static [&'static str],
-    pub put: Box<dyn Fn(&mut Folder, f64) + Send + Sync>,
+    pub put: Put,
 }
 
 /// Smallest and largest change of a statistic, as a share of its limit.

@@ -338,7 +338,7 @@ impl Campaign {
         let same = |edited: &&Edited| Format::stem(&edited.record.value) == Format::stem(path);
         let reason = || self.edited.iter().find(same).map(|edited| edited.reason.clone());
         let changed = || Changed { imported: written.is_some(), reason: reason() };
-        (!written.is_some_and(|record| record.sha256 == sha256)).then(changed)
+        written.is_none_or(|record| record.sha256 != sha256).then(changed)
     }
 }
 

@@ -103,7 +103,7 @@ fn values(found: &Certification) -> Vec<Block> {
         };
         cells![
             Cell::text(Text::lines(lines.chain([Run::Quiet(why.to_owned()).into()]))),
-            Cell::formula(&value.in_words()),
+            Cell::formula(value.in_words()),
             Cell::or_missing(value.clause.as_deref()),
             confirmed
         ]

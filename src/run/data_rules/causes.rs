@@ -115,8 +115,11 @@ struct Reach {
     /// Whether it stands in most sections.
     in_most: bool,
     /// By campaign and section, the record, if it is one of them, and the columns.
-    places: IndexMap<SectionOf, Vec<(Option<String>, BTreeSet<String>)>>,
+    places: IndexMap<SectionOf, Vec<RecordAndColumns>>,
 }
+
+/// A record, if it is one of them, and columns.
+type RecordAndColumns = (Option<String>, BTreeSet<String>);
 
 /// The campaign and the section, if any.
 type SectionOf = (Option<String>, Option<String>);

@@ -17,6 +17,8 @@ const FEWEST: usize = 5;
 
 /// Shapes of one record.
 type Shapes<'a> = Vec<&'a Shape>;
+/// Adds a finding at a record or channel; the data by the title of the rule.
+type Tell<'a> = dyn FnMut(&Shape, bool, &dyn Fn(String) -> FindingData) + 'a;
 
 /// A section with its first simulation and all measurements.
 struct Section<'a> {
@@ -133,17 +135,12 @@ impl Matching<'_> {
     }
 
     /// Each channel of a record against the simulated ones of its rule.
-    fn channels(
-        &self,
-        shapes: &Shapes<'_>,
-        simulated: &Shapes<'_>,
-        tell: &mut dyn FnMut(&Shape, bool, &dyn Fn(String) -> FindingData),
-    ) {
+    fn channels(&self, shapes: &Shapes<'_>, simulated: &Shapes<'_>, tell: &mut Tell<'_>) {
         let own = |shape: &&Shape| shape.agreement(partner(shape, simulated)?);
         let all: Vec<f64> = shapes.iter().filter_map(own).collect();
         let of_others = median(&all).filter(|_| all.len() >= FEWEST).unwrap_or(1.0);
         for shape in shapes {
-            let Some(own) = own(&shape) else { continue };
+            let Some(own) = own(shape) else { continue };
             let least = self.test.least.max(own.abs() + self.test.more);
             let others = simulated.iter().filter(|other| {
                 least <= 1.0 && other.rule == shape.rule && other.channel != shape.channel

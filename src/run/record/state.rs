@@ -346,7 +346,7 @@ impl State<'_> {
                 }
                 Err(error) => {
                     for (id, _) in percents {
-                        self.failed[id] = Some(Reason::method(&error));
+                        self.failed[id] = Some(Reason::method(error));
                     }
                 }
             }

@@ -125,7 +125,7 @@ fn too_many_removed(plan: &Plan, facts: &Facts, units: &[Unit]) -> Option<Reason
     let removed = given.iter().filter(|unit| unit.fault.is_some());
     let removed: Vec<String> = removed.map(|unit| unit.name.clone()).collect();
     let allowed = most * given.len() as f64 * (1.0 + ROUNDING);
-    (removed.len() as f64 > allowed).then(|| Reason::TooManyRemoved {
+    (removed.len() as f64 > allowed).then_some(Reason::TooManyRemoved {
         removed: removed.len(),
         sections: given.len(),
         most: 100.0 * most,
