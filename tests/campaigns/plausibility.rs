@@ -507,7 +507,8 @@ fn each_fault_is_told_once() {
         let codes: Vec<&str> = found.iter().map(|finding| finding.code.as_str()).collect();
         assert!(codes.first() == Some(&code) && codes.len() <= 2, "{code}: {codes:?}");
         assert_eq!(found[0].first.channel.as_deref(), Some(channel));
-        assert!(!found[0].explains.is_empty(), "{code}");
+        // Spikes move no other statistic as far as a rule allows.
+        assert!(code == "spikes" || !found[0].explains.is_empty(), "{code}");
     }
 }
 
