@@ -160,7 +160,7 @@ mod tests {
         let mut budget = Budget::of(packed.len());
         assert!(budget.unpacked(&packed).is_ok());
         let why = budget.unpacked(&packed).expect_err("too large");
-        assert!(why.contains("more than 64 MB"), "{why}");
+        assert!(why.contains("more than 68 MB"), "{why}");
         let mut larger = Budget::of(10 << 20);
         assert!((0..3).all(|_| larger.unpacked(&packed).is_ok()));
     }
