@@ -10,11 +10,6 @@ protocol code-benchmark-reference "Comparison of simulation codes with a referen
            "in the place of the measured records."
   note     "Measured, in this report, is the reference: no record of a vehicle is compared."
 
-plausibility copies
-  distinct  channels, sections, records
-  note      "Codes that solve one case well agree with the reference in many written digits: a copy is the"
-            "same in all of its channels."
-
 quantity {force}_qst "{title}, quasi-static value: deviation from the reference"
   for each  force, title in (Y, Guiding force), (Q, Vertical wheel force)
   compare   simulated with measured

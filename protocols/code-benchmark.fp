@@ -79,6 +79,11 @@ channel az "Car body vertical acceleration"
 filter LP20 "Low-pass filter 20 Hz"
   step  low-pass 20 Hz, order 4, zero-phase, as-applied
 
+plausibility copies
+  distinct  channels, sections, records
+  note      "Codes that solve one case well agree in many written digits: a copy is the same in all of its"
+            "channels."
+
 quantity {force}_qst "{title}, quasi-static value: spread"
   for each    force, title in (Y, Guiding force), (Q, Vertical wheel force)
   symbol      "{force}_qst"

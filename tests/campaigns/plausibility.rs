@@ -8,7 +8,7 @@ use std::path::Path;
 use crate::bench::evaluate::{self, Outcome, Program};
 use crate::bench::folder::{Folder, Side};
 use crate::bench::{self, variations};
-use crate::common::campaign::{certified, copy, tiny};
+use crate::common::campaign::{certified, copy, lines, tiny};
 use fishplate::result::{Certification, Consequence, Finding, Verdict};
 
 const SOUND: &str = "examples/coach-good";
@@ -333,6 +333,56 @@ fn no_shipped_protocol_validates_a_copy_of_the_measurement() {
         let first = found.findings.iter().find(|finding| finding.rule().is_some());
         assert_eq!(first.map(|first| first.code.as_str()), Some("copies"), "{protocol}");
     }
+}
+
+/// Codes that are compared with each other are not one code under several names.
+#[test]
+fn a_benchmark_of_codes_does_not_pass_copies_of_one_code() {
+    let folder = copy(Path::new("examples/code-benchmark"));
+    let codes = folder.path().join("codes");
+    for code in ["independent", "midpoint", "polach"] {
+        for record in fs::read_dir(codes.join("built_in")).expect("a folder") {
+            let record = record.expect("a record");
+            fs::copy(record.path(), codes.join(code).join(record.file_name())).expect("copied");
+        }
+    }
+    for protocol in ["code-benchmark", "code-benchmark-reference"] {
+        let sound =
+            certified(Path::new("examples/code-benchmark"), protocol, &[]).expect("a result");
+        let copies = |found: &Certification| found.findings.iter().any(|one| one.code == "copies");
+        assert!(!copies(&sound), "{protocol}");
+        let found = certified(folder.path(), protocol, &[]).expect("a result");
+        assert_eq!(found.verdict, Verdict::NotAssessable, "{protocol}");
+        assert!(copies(&found), "{protocol}");
+    }
+}
+
+/// A campaign in which every channel of both sides is dead.
+#[test]
+fn no_shipped_protocol_validates_dead_channels() {
+    let folder = copy(Path::new(SOUND));
+    for side in ["measurement", "simulation"] {
+        for record in fs::read_dir(folder.path().join(side)).expect("a folder") {
+            lines(&record.expect("a record").path(), |lines| {
+                for line in lines.iter_mut().skip(1) {
+                    let (axes, channels) = line
+                        .match_indices(',')
+                        .nth(1)
+                        .map(|(at, _)| line.split_at(at))
+                        .expect("axes");
+                    *line = axes.to_owned() + &",0".repeat(channels.matches(',').count());
+                }
+            });
+        }
+    }
+    let mut evaluated = 0;
+    for protocol in fishplate::library::names() {
+        // Those of other machines cannot be evaluated.
+        let Ok(found) = certified(folder.path(), protocol, &[]) else { continue };
+        evaluated += 1;
+        assert_eq!(found.verdict, Verdict::NotAssessable, "{protocol}");
+    }
+    assert!(evaluated >= 20, "{evaluated}");
 }
 
 /// More sections removed than a protocol allows: the reason has the numbers and the sections.

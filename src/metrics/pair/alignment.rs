@@ -13,10 +13,10 @@ const FARTHEST: f64 = 0.25;
 /// unrelated ranges of 250 m with wavelengths of 10 m (25 waves), the largest correlation at about
 /// 50 independent shifts is seldom above 0.5.
 const FOLLOWS: f64 = 0.5;
-/// Agreement at two shifts that differs by less is that of chance: the error of a correlation over
-/// 25 waves. The nearer shift counts. A body that sways has nearly equal waves, and agrees again one
-/// wave farther.
-const BY_CHANCE: f64 = 0.15;
+/// Two errors of a correlation r over 25 waves, as a share of 1 - r^2: the error is (1 - r^2) /
+/// sqrt(25). Agreement at two shifts that differs by less is that of chance, and the nearer shift
+/// counts. A body that sways has nearly equal waves, and agrees again one wave farther.
+const BY_CHANCE: f64 = 0.4;
 
 /// Shift to be added to the measured axis for the largest correlation with the simulated signal, in
 /// the unit of the axis.
@@ -41,8 +41,9 @@ pub fn shift(axis: &[f64], simulated: &[f64], measured: &[f64]) -> Metric {
         return undefined("the signals are not correlated at any shift");
     }
     let peak = |at: &usize| all[at - 1] <= all[*at] && all[at + 1] <= all[*at];
+    let least = all[best] - BY_CHANCE * (1.0 - all[best].powi(2));
     let nearest = (1..all.len() - 1)
-        .filter(|at| all[*at] > all[best] - BY_CHANCE)
+        .filter(|at| all[*at] > least)
         .filter(peak)
         .min_by_key(|at| at.abs_diff(most));
     let best = nearest.unwrap_or(best);
@@ -96,7 +97,7 @@ mod tests {
     fn a_known_shift_is_found() {
         let axis: Vec<f64> = (0..1000).map(|k| 100.0 + 0.2 * f64::from(k)).collect();
         let simulated: Vec<f64> = axis.iter().map(|x| track(*x)).collect();
-        for known in [3.2, -5.7, 0.0] {
+        for known in [3.2, -5.7, 0.0, 21.0] {
             let measured: Vec<f64> = axis.iter().map(|x| track(x + known)).collect();
             let found = shift(&axis, &simulated, &measured).expect("they follow");
             assert!((found - known).abs() < 0.05, "{found}, made with {known}");
@@ -121,15 +122,16 @@ mod tests {
         assert!(shift(&[], &[], &[]).is_err());
     }
 
-    /// Waves that are nearly equal agree again one wave farther.
+    /// Waves that are nearly equal agree again some waves farther; here even better, by chance.
     #[test]
     fn of_equal_waves_the_nearest_counts() {
         let axis: Vec<f64> = (0..1500).map(|k| 0.2 * f64::from(k)).collect();
         let wave = |at: f64| (at / 3.0).sin();
-        let simulated: Vec<f64> = axis.iter().map(|x| wave(*x)).collect();
+        let simulated: Vec<f64> = axis.iter().map(|x| wave(*x) + 0.5 * (1.7 * x).sin()).collect();
         // The last waves are larger: three waves farther, they are not in the overlap.
         let grown = |x: f64| if x > 260.0 { 3.0 } else { 1.0 };
-        let measured: Vec<f64> = axis.iter().map(|x| grown(*x) * wave(x + 1.0)).collect();
+        let measured: Vec<f64> =
+            axis.iter().map(|x| grown(*x) * wave(x + 1.0) + 0.5 * (2.3 * x).sin()).collect();
         let found = shift(&axis, &simulated, &measured).expect("related");
         assert!((found - 1.0).abs() < 0.5, "{found}");
     }

@@ -52,7 +52,7 @@ pub fn find(plan: &Plan, units: &[Unit], values: &[SectionValues]) -> Vec<Findin
             let prints = values[later].prints.iter();
             let all = prints.filter(|print| print.rule == rule.name && print.which == which);
             let part = later == earlier && which != of && found.channels.len() < all.count();
-            if part && !distinct.sides {
+            if part && !(distinct.sides && of_sides(which, of)) {
                 continue;
             }
             let (later, earlier) = (&units[later], &units[earlier]);
@@ -106,6 +106,12 @@ impl Several {
     }
 }
 
+/// Whether two records are compared channel by channel. What two simulations do differently may not
+/// act on a channel at all.
+fn of_sides(a: WhichRecord, b: WhichRecord) -> bool {
+    (a.kind, b.kind) != (RecordKind::Simulation, RecordKind::Simulation)
+}
+
 fn shared<'a>(rule: &str, distinct: Distinct, values: &'a [SectionValues]) -> Shared<'a> {
     let print = |(section, at): PrintIndex| &values[section].prints[at];
     let prints = || {
@@ -146,12 +152,9 @@ fn shared<'a>(rule: &str, distinct: Distinct, values: &'a [SectionValues]) -> Sh
         }
         let asked = match (earlier.0 == later.0, a.which == b.which, a.channel == b.channel) {
             (true, true, _) => distinct.channels,
-            // What two simulations do differently may not act on a channel at all.
             (true, false, _) => {
-                let kinds = (a.which.kind, b.which.kind);
                 let whole = distinct.records && (&a.channel, a.whole) == (&b.channel, b.whole);
-                (distinct.sides || whole)
-                    && kinds != (RecordKind::Simulation, RecordKind::Simulation)
+                whole || distinct.sides && of_sides(a.which, b.which)
             }
             (false, true, true) => distinct.sections,
             // Another channel of another section: reported if equality between sections and between

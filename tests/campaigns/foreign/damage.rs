@@ -271,6 +271,10 @@ fn bombs_are_refused() {
     let book = book.finish().expect("finished").into_inner();
     assert_eq!(tried(&folder.file("x.xlsx"), "x.xlsx", &book, "bomb"), Some("too-many-values"));
 
+    // A text takes more memory for each line than for its letters.
+    let lines = b"1.5,2\n".repeat((16 << 20) + 1);
+    assert_eq!(tried(&folder.file("x.csv"), "x.csv", &lines, "bomb"), Some("too-many-values"));
+
     // Parquet: one value, repeated.
     let schema = Arc::new(arrow_schema::Schema::new(vec![arrow_schema::Field::new(
         "y",
