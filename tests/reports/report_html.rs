@@ -57,6 +57,14 @@ fn chapters_come_in_the_order_of_an_assessor() {
     );
 }
 
+/// What limits the verdict stands beside it, on the screen as on paper.
+#[test]
+fn limitations_are_on_the_cover() {
+    let page = page(&coach::certification());
+    let cover = between(&page, "<header id=\"cover\"", "</header>");
+    assert!(cover.contains("Limitations"), "{cover}");
+}
+
 #[test]
 fn every_value_is_in_the_page() {
     let found = coach::certification();

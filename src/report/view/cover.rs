@@ -56,7 +56,7 @@ pub fn cover(view: &View<'_>) -> Cover {
     };
     let mut blocks = Vec::from_iter(beside(view));
     blocks.extend(reasons(view));
-    blocks.extend(limitations(view, LIMITATIONS).map(|block| Block::on_paper([block])));
+    blocks.extend(limitations(view, LIMITATIONS));
     blocks.extend(verdicts_with_a_name(view));
     blocks.push(Block::Tiles(key_facts(view)));
     blocks.extend(identification(view));
