@@ -332,7 +332,7 @@ check full_curve "Section lies in full curve or on straight track"
   note       "Requires the track file; the tolerance is this protocol's own."
 
 plausibility exchanged
-  exchanged  from 0.6, by 0.3
+  exchanged  from 0.6, by 0.3, alike from 0.7
   note       "Forces of neighbouring wheels are alike: in sound sections a channel agrees with another one"
              "better than with its own by at most 0.04. Over all channels, records of six sound campaigns"
              "have correlations of 0.62 to 0.95 with their own simulation, and of at most 0.29 with records"
@@ -378,7 +378,7 @@ plausibility independent "Differences as large as those of a model"
 plausibility mirrored "Records in the same direction"
   of         az
   filter     BP
-  require    mirrored_correlation <= larger of 0.6, correlation
+  require    mirrored_correlation <= larger of 0.6, correlation + 0.3
   concerns   record
   otherwise  not used
   cause      "a record in the opposite running direction"
@@ -398,6 +398,13 @@ plausibility running_speed "Speed from distance and time against the table of se
   otherwise  not used
   cause      "the clock, the scale of the distance, or the speed of the table"
   note       "A section is run at constant speed. A table with nominal speeds may be off by 2 km/h."
+
+plausibility test_speed "Speed of the table against the admissible speed"
+  require    speed <= 1.1 * admissible_speed + 10 km/h
+  otherwise  not assessable
+  cause      "the admissible speed of the vehicle file, or the speeds of the table of sections"
+  note       "The test speed is at most 1.1 times the admissible one; 10 km/h are allowed for the run. The"
+             "length of the sections depends on the admissible speed."
 
 plausibility table_of_curves "Cant deficiency against speed, radius and cant"
   require    |cant_deficiency| near |1500 mm * (speed^2 / radius / 9.80665 m/s^2) - cant| within 15 mm
@@ -482,12 +489,12 @@ plausibility load_transfer_gain "Load transfer to the outer wheels, over all sec
 
 plausibility load_transfer "Load transfer to the outer wheels"
   of         DeltaQ at each wheelset
-  require    turn * median > -0.2 * Q0
+  require    turn * median > -0.3 * Q0
   unless     direction is straight or cant_deficiency < 60 mm
   otherwise  not used
   cause      "exchange of the left and the right wheel, or the direction of the curve"
   note       "With 60 mm of cant deficiency the outer wheel carries about 5 % more. A cross wind of 25 kN"
-             "takes up to 19 % of Q0 more from it than the curve adds."
+             "takes up to 27 % of Q0 more from it than the curve adds."
 
 plausibility guiding_gain "Sum of the guiding forces over the unbalanced acceleration, over all sections"
   of       TotalY
@@ -556,10 +563,10 @@ plausibility acceleration_level "Level of the car body accelerations"
   of         ay at each running_gear
   of         az at each running_gear
   filter     BP
-  require    0.02 m/s^2 <= rms and rms <= 2 m/s^2
+  require    0.01 m/s^2 <= rms and rms <= 2 m/s^2
   otherwise  not used
   cause      "the unit of the acceleration, g instead of m/s^2; a sensor without a signal"
-  note       "The bounds are this protocol's own: a quarter of the value of a coach on good track, and twice"
+  note       "The bounds are this protocol's own: an eighth of the value of a coach on good track, and twice"
              "the value of a locomotive on poor track."
 
 plausibility spikes "Samples out of line"

@@ -416,12 +416,12 @@ plausibility static_load "Vertical wheel force against the static load"
 
 plausibility load_transfer "Load transfer to the outer wheels"
   of         DeltaQ at each wheelset
-  require    turn * median > -0.2 * Q0
+  require    turn * median > -0.3 * Q0
   unless     direction is straight or cant_deficiency < 60 mm
   otherwise  not used
   cause      "exchange of the left and the right wheel, or the direction of the curve"
   note       "With 60 mm of cant deficiency the outer wheel carries about 5 % more. A cross wind of 25 kN"
-             "takes up to 19 % of Q0 more from it than the curve adds."
+             "takes up to 27 % of Q0 more from it than the curve adds."
 
 plausibility guiding_sign "Guiding force of the outer leading wheel"
   of         Y at wheelset 1 and side outer
@@ -461,10 +461,10 @@ plausibility acceleration_level "Level of the car body accelerations"
   of         ay at each running_gear
   of         az at each running_gear
   filter     BP
-  require    0.02 m/s^2 <= rms and rms <= 2 m/s^2
+  require    0.01 m/s^2 <= rms and rms <= 2 m/s^2
   otherwise  not used
   cause      "the unit of the acceleration, g instead of m/s^2; a sensor without a signal"
-  note       "The bounds are this protocol's own: a quarter of the value of a coach on good track, and twice"
+  note       "The bounds are this protocol's own: an eighth of the value of a coach on good track, and twice"
              "the value of a locomotive on poor track."
 
 plausibility running_speed "Speed from distance and time against the table of sections"
@@ -473,6 +473,13 @@ plausibility running_speed "Speed from distance and time against the table of se
   otherwise  not used
   cause      "the clock, the scale of the distance, or the speed of the table"
   note       "A section is run at constant speed. A table with nominal speeds may be off by 2 km/h."
+
+plausibility test_speed "Speed of the table against the admissible speed"
+  require    speed <= 1.1 * admissible_speed + 10 km/h
+  otherwise  not assessable
+  cause      "the admissible speed of the vehicle file, or the speeds of the table of sections"
+  note       "The test speed is at most 1.1 times the admissible one; 10 km/h are allowed for the run. The"
+             "length of the sections depends on the admissible speed."
 
 plausibility table_of_curves "Cant deficiency against speed, radius and cant"
   require    |cant_deficiency| near |1500 mm * (speed^2 / radius / 9.80665 m/s^2) - cant| within 15 mm

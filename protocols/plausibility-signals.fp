@@ -42,7 +42,7 @@ plausibility coarse "Channel with coarse resolution"
 
 plausibility exchanged "Records and channels that belong together"
   of         every channel
-  exchanged  from 0.6, by 0.3
+  exchanged  from 0.6, by 0.3, alike from 0.7
   concerns   record
   otherwise  not used
   cause      "exchanged or copied channels, wheelsets, sides or sections of one of the records; a turned"
@@ -60,9 +60,10 @@ plausibility same_sign "Simulation and measurement with the same sign"
 
 plausibility same_size "Scatter of simulation and measurement"
   of         every channel
-  require    measured(std) near simulated(std) within a factor of 6
+  require    measured(std) near simulated(std) within a factor of 7
   otherwise  not used
   cause      "the unit of one of the two records"
+  note       "The smallest likely error, g in place of m/s^2, is a factor of 9.8."
 
 plausibility drift "Drift of the measurement"
   of       every channel

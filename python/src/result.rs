@@ -53,8 +53,14 @@ pub struct Result {
 impl Result {
     /// `validated`, `not validated` or `not assessable`, or the words of the protocol.
     #[getter]
-    fn verdict(&self) -> String {
-        self.found.verdict_in_words()
+    fn verdict(&self) -> &str {
+        self.found.verdict_word()
+    }
+
+    /// Names of the values that nobody has confirmed; with one of them the verdict is provisional.
+    #[getter]
+    fn provisional(&self) -> Vec<&str> {
+        self.found.provisional.iter().map(|value| value.name.as_str()).collect()
     }
 
     /// Whether the verdict holds.

@@ -89,6 +89,8 @@ def test_a_report_as_pdf_needs_the_typesetter(from_files, tmp_path, coach):
 
 def test_the_result(from_files):
     assert (from_files.verdict, from_files.holds) == ("not validated", False)
+    results = json.loads(from_files.json())
+    assert from_files.provisional == [value["name"] for value in results["provisional"]] != []
     assert from_files.reasons == ["YQ_qst: mean 0.0609 exceeds the limit 0.0467 by 30 %"]
     summary = from_files.summary.to_polars()
     row = summary.filter((polars.col("quantity") == "YQ_qst") & ~polars.col("holds"))

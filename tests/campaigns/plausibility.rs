@@ -183,7 +183,7 @@ fn a_finding_with_two_bounds_has_its_value() {
             .first
             .text()
             .to_string()
-            .contains("required: 0.02 m/s^2 <= rms and rms <= 2 m/s^2 (2 m/s^2)"),
+            .contains("required: 0.01 m/s^2 <= rms and rms <= 2 m/s^2 (2 m/s^2)"),
         "{finding:?}"
     );
     assert!(cause(finding).starts_with("the unit of the acceleration"), "{finding:?}");

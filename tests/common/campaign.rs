@@ -126,7 +126,7 @@ pub fn write_tiny(folder: &Path) {
     );
     write(
         "vehicle.yaml",
-        "name: Wagon\ncategory: passenger\nrunning_gear: bogies\nsecondary_suspension: true\nstatic_wheel_load: 50\nadmissible_speed: 120 km/h\n",
+        "name: Wagon\ncategory: passenger\nrunning_gear: bogies\nsecondary_suspension: true\nstatic_wheel_load: 50\nadmissible_speed: 130 km/h\n",
     );
     let mut sections = String::from(
         "section,zone [-],start [m],end [m],radius [m],direction,cant [mm],cant deficiency [mm],speed [km/h]\n",
@@ -184,9 +184,10 @@ fn record(
         let time = f64::from(row) / RATE;
         let _ = write!(text, "{time:.2},{:.3}", time * speed);
         let wave = |nth: usize| {
-            // Waves that grow shorter: read from its end, a record is another.
-            let at =
-                6.3 * time + 0.4 * time.powi(2) + 0.7 * nth as f64 + 0.4 * number as f64 + phase;
+            // Waves that grow shorter: read from its end, a record is another. Other ones in each
+            // section: on one track, no two sections are alike.
+            let rate = 6.3 + 0.9 * number as f64;
+            let at = rate * time + 0.4 * time.powi(2) + 0.7 * nth as f64 + phase;
             gain * (at.sin() + 0.5 * (2.3 * at).sin() + 0.1 * (9.1 * at).sin())
         };
         for (nth, channel) in channels.iter().enumerate() {

@@ -14,6 +14,10 @@ use crate::run::values::{SectionValues, Shape};
 
 /// Least number of sections, or of channels, for what is usual.
 const FEWEST: usize = 5;
+/// A channel agrees far less than usual where Fisher's transform of the correlation is lower by more
+/// than this. It is as uncertain at 0.3 as at 0.99, by 1 / sqrt(n) over n waves: over ten waves, this
+/// is more than three errors of a difference.
+const FAR_BELOW: f64 = 1.5;
 
 /// Shapes of one record.
 type Shapes<'a> = Vec<&'a Shape>;
@@ -156,7 +160,7 @@ impl Matching<'_> {
                     correlation: found,
                     own_correlation: own,
                 });
-            } else if own + 2.0 * self.test.more < usual.min(of_others) {
+            } else if fisher(usual.min(of_others)) - fisher(own) > FAR_BELOW {
                 tell(shape, true, &|rule| matched(rule, (None, None), (usual, Some(own))));
             }
         }
@@ -184,6 +188,12 @@ impl Matching<'_> {
             ..Finding::note(&rule.name, first)
         })
     }
+}
+
+/// Fisher's transform; finite for full agreement, too.
+fn fisher(correlation: f64) -> f64 {
+    const LARGEST: f64 = 0.9999;
+    correlation.clamp(-LARGEST, LARGEST).atanh()
 }
 
 fn best(all: impl Iterator<Item = (String, f64)>) -> Option<(String, f64)> {

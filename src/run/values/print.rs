@@ -11,9 +11,9 @@ const RUN: usize = 8;
 /// One run of samples in this many becomes a mark. It is chosen by its content, so that the same
 /// runs are chosen wherever they are in a record.
 const ONE_IN: u64 = 16;
-/// Fewest different values of a mark: of a smooth signal with few decimals, most runs of samples
-/// have fewer, and such runs are equal by chance.
-const DIFFERENT: usize = 6;
+/// Fewest different steps of a mark, of seven: a smooth signal with few decimals has few, and such
+/// runs of samples are equal by chance.
+const DIFFERENT: usize = 5;
 
 /// Marks of one signal in one section.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -48,8 +48,8 @@ impl Print {
 /// Samples whose runs are hashed together: the hashes stay in the first-level cache.
 const TOGETHER: usize = 256;
 
-/// Marks of a signal: hashes of runs of samples. Runs of few values are equal in many places and
-/// give no mark.
+/// Marks of a signal: hashes of runs of samples. Runs of few different steps are equal in many
+/// places and give no mark.
 fn marks(samples: &[f64]) -> Vec<u32> {
     let mut found = Vec::with_capacity(2 * samples.len() / ONE_IN as usize);
     let mut hashes = [0; TOGETHER + RUN];
@@ -74,9 +74,14 @@ fn marks(samples: &[f64]) -> Vec<u32> {
     found
 }
 
-/// The number of different values of a run.
+/// The number of steps of different size between the samples of a run.
 fn different(run: &[f64]) -> usize {
-    run.iter().enumerate().filter(|(at, value)| !run[..*at].contains(value)).count()
+    /// Steps of equal decimal numbers differ by rounding, as a share of the numbers.
+    const ROUNDING: f64 = 1e-12;
+    let least = ROUNDING * run.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+    let step = |at: usize| run[at + 1] - run[at];
+    let is_new = |at: &usize| (0..*at).all(|other| (step(other) - step(*at)).abs() > least);
+    (0..run.len() - 1).filter(is_new).count()
 }
 
 /// Of consecutive samples, the hash of one is turned by so many bits against that of the next.
