@@ -416,12 +416,12 @@ plausibility static_load "Vertical wheel force against the static load"
 
 plausibility load_transfer "Load transfer to the outer wheels"
   of         DeltaQ at each wheelset
-  require    turn * median > -0.3 * Q0
+  require    turn * median > -0.15 * Q0 - |median of TotalY + 8 * Q0 / 9.80665 m/s^2 * unbalanced_acceleration|
   unless     direction is straight or cant_deficiency < 60 mm
   otherwise  not used
   cause      "exchange of the left and the right wheel, or the direction of the curve"
-  note       "With 60 mm of cant deficiency the outer wheel carries about 5 % more. A cross wind of 25 kN"
-             "takes up to 27 % of Q0 more from it than the curve adds."
+  note       "With 60 mm of cant deficiency the outer wheel carries about 5 % more. A cross wind takes from"
+             "it less than its own force, which the guiding forces show."
 
 plausibility guiding_sign "Guiding force of the outer leading wheel"
   of         Y at wheelset 1 and side outer
@@ -474,6 +474,14 @@ plausibility running_speed "Speed from distance and time against the table of se
   cause      "the clock, the scale of the distance, or the speed of the table"
   note       "A section is run at constant speed. A table with nominal speeds may be off by 2 km/h."
 
+plausibility clock "Speed from distance and time against the table, over all sections"
+  require   range of running_distance / range of clock near speed within 10 km/h
+  over      sections
+  slope     0.985 to 1.015
+  concerns  record
+  cause     "the clock or the scale of the distance of one of the records, or the speeds of the table"
+  note      "Single sections may be run a little off the speed of the table; all together are not."
+
 plausibility test_speed "Speed of the table against the admissible speed"
   require    speed <= 1.1 * admissible_speed + 10 km/h
   otherwise  not assessable
@@ -489,7 +497,7 @@ plausibility table_of_curves "Cant deficiency against speed, radius and cant"
   cause      "radius, speed, cant or cant deficiency of the table of sections"
 
 plausibility track_curvature "Curvature of the track file against radius and direction"
-  require    mean of curvature near turn / radius within 5 %
+  require    mean of curvature near turn / radius within 3 %
   concerns   record
   unless     direction is straight
   otherwise  not used

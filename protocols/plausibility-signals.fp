@@ -34,11 +34,11 @@ plausibility saturated "Saturated channel"
 
 plausibility coarse "Channel with coarse resolution"
   of         every channel
-  require    resolution <= 0.3 * std
+  require    resolution <= 0.5 * std
   otherwise  not used
   cause      "insufficient resolution of the recorder, or too few decimals"
-  note       "Steps of 30 % of the standard deviation increase it by 0.4 % and distort percentiles. Forces"
-             "with one decimal and accelerations with two have steps of up to 15 % on good track."
+  note       "Steps of half the standard deviation increase it by 1 % and distort percentiles. Forces with"
+             "one decimal and accelerations with two have steps of up to 45 % on good track."
 
 plausibility exchanged "Records and channels that belong together"
   of         every channel
@@ -60,7 +60,7 @@ plausibility same_sign "Simulation and measurement with the same sign"
 
 plausibility same_size "Scatter of simulation and measurement"
   of         every channel
-  require    measured(std) near simulated(std) within a factor of 7
+  require    measured(p84) - measured(p16) near simulated(p84) - simulated(p16) within a factor of 7
   otherwise  not used
   cause      "the unit of one of the two records"
   note       "The smallest likely error, g in place of m/s^2, is a factor of 9.8."

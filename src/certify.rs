@@ -13,8 +13,9 @@ use crate::data::hash::{Hasher, sha256};
 use crate::graph::{self, Graph};
 use crate::problem::{Problems, error};
 use crate::result::{
-    CampaignInfo, Certification, ChannelInfo, DataItem, FORMAT, FileHash, FilterInfo, Kind,
-    OriginInfo, ParameterInfo, ProtocolFile, ProtocolInfo, Remark, Removed, THIS,
+    CampaignInfo, Certification, ChannelInfo, DataItem, FORMAT, FileHash, FilterInfo, Finding,
+    FindingData, Kind, OriginInfo, ParameterInfo, ProtocolFile, ProtocolInfo, Remark, Removed,
+    THIS,
 };
 use crate::run::{self, Outcome, Progress, Settings};
 use crate::syntax::document::Block;
@@ -105,7 +106,12 @@ pub fn certification(compiled: &Compiled, about: &About, outcome: Outcome) -> Ce
     notes.extend(
         campaign.origin.as_ref().map(|origin| Remark::Origin { says: origin.says.clone() }),
     );
-    let deviations = deviations::all(&compiled.plan, &protocol, &outcome.findings, &mut notes);
+    let mut findings = outcome.findings;
+    if !campaign.outside_table.is_empty() {
+        let sections = campaign.outside_table.clone();
+        findings.push(Finding::note("not-in-table", FindingData::NotInTable { sections }));
+    }
+    let deviations = deviations::all(&compiled.plan, &protocol, &findings, &mut notes);
     Certification {
         fishplate: THIS.into(),
         format: FORMAT,
@@ -130,7 +136,7 @@ pub fn certification(compiled: &Compiled, about: &About, outcome: Outcome) -> Ce
         domain: outcome.domain,
         application: outcome.application,
         traces: outcome.traces,
-        findings: outcome.findings,
+        findings,
         protocol,
         notes,
     }

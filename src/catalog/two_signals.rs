@@ -488,6 +488,22 @@ pub const METRICS: &[MetricEntry] = &[
             ))
         },
     ),
+    entry(
+        &[
+            Word("least"),
+            Word("ratio"),
+            Word("of"),
+            Word("spectra"),
+            Word("from"),
+            Frequency("low"),
+            Word("to"),
+            Frequency("high"),
+        ],
+        Best::Greatest(1.0),
+        "Smallest ratio of the spectral densities of both signals at a line of the band, of the smaller one over the larger one: near 0 where one signal lacks what the other one has.",
+        "definition",
+        |p| said(coherence::least_ratio((p.simulated, p.measured), p.rate, in_band(p)?)),
+    ),
     of_loops(
         &[Word("hysteresis"), Word("maximum"), Word("over"), Signal("axis")],
         "Largest difference of the hysteresis loops of the signal over another one: simulated and measured on the same branch.",

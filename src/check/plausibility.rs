@@ -174,7 +174,7 @@ impl Checker<'_> {
         Some(word == "record")
     }
 
-    /// `over sections`, with `slope 0.9 to 1.1`.
+    /// `over sections`, with `slope 0.9 to 1.1`, or `over order of sections`.
     fn over_sections(
         &mut self,
         block: &Block,
@@ -186,15 +186,17 @@ impl Checker<'_> {
         let refusal = |says: &str, help: &str| {
             Some(error("over-sections", says, field).help(help.to_string()))
         };
+        let ordered = over.is_some_and(|over| normalised(&over.value.text) == "order of sections");
         let near =
             requirement.compared.iter().all(|one| matches!(one.relation, Relation::Within(_)));
         let problem = match over {
             None => {
                 refusal("`slope` is that of all sections together", "write `over  sections` too")
             }
-            Some(over) if normalised(&over.value.text) != "sections" => {
-                refusal("a requirement can be `over sections`", "write `over  sections`")
-            }
+            Some(over) if !ordered && normalised(&over.value.text) != "sections" => refusal(
+                "a requirement can be `over sections` or `over order of sections`",
+                "write `over  sections`",
+            ),
             _ if matches!(requirement.of, Looks::Data | Looks::Track) => refusal(
                 "a requirement over sections needs values of signals",
                 "name a signal in `of`, and take a value of it, such as `median`",
@@ -210,6 +212,14 @@ impl Checker<'_> {
                     "join comparisons by `and` only, and write a tolerance in place of a factor",
                 )
             }
+            _ if slope.is_some() && ordered => refusal(
+                "in the order of sections, a change is compared, and no slope",
+                "write `over  sections`, or leave `slope` out",
+            ),
+            _ if ordered && !near => refusal(
+                "a change is that of the values found less those expected",
+                "write `require  a near b within c`",
+            ),
             _ if slope.is_some() && !near => refusal(
                 "a slope is that of the values found over those expected",
                 "write `require  a near b within c`",
@@ -223,7 +233,10 @@ impl Checker<'_> {
         if let Some(problem) = problem {
             return self.refuse(problem);
         }
-        let Some(slope) = slope else { return Some(Some(OverSections::default())) };
+        if ordered {
+            return Some(Some(OverSections::Change));
+        }
+        let Some(slope) = slope else { return Some(Some(OverSections::Level { slope: None })) };
         let text = normalised(&slope.value.text);
         let numbers = text.split_once(" to ").and_then(|(least, most)| {
             let (least, most) = (least.parse::<f64>().ok()?, most.parse::<f64>().ok()?);
@@ -234,7 +247,7 @@ impl Checker<'_> {
             return self
                 .refuse(error("over-sections", says, slope).help("write `slope  0.9 to 1.1`"));
         }
-        Some(Some(OverSections { slope: numbers }))
+        Some(Some(OverSections::Level { slope: numbers }))
     }
 
     fn signals_with_unit(&mut self, field: &Field, chain: &[Step]) -> Option<Of> {

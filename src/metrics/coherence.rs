@@ -20,6 +20,9 @@ const LINES: f64 = 3.0;
 const SHORTEST: usize = 32;
 /// Least number of windows: of fewer, unrelated signals share more than a tenth by chance.
 const FEWEST: usize = 8;
+/// Least number of windows of a spectral density: a band that a filter took away is seen with few,
+/// and only with long ones.
+const FEWEST_OF_POWER: usize = 4;
 /// Where the content of a signal is its noise: this share of the spectrum, up to its end. A record
 /// has no content of its own there: its anti-aliasing filter is below.
 const TOP: f64 = 0.4;
@@ -105,6 +108,29 @@ pub fn unexplained(of: Both<'_>, rate: f64, band: (f64, f64)) -> Metric {
     } else {
         undefined("both signals are without noise")
     }
+}
+
+/// The smallest ratio of the spectral densities of two signals at a line of a band, of the smaller
+/// one over the larger one: near 0 where one signal lacks what the other one has.
+///
+/// # Errors
+/// Fewer samples than four windows of 32; no spectral line in the band; a signal without content.
+pub fn least_ratio(of: (&[f64], &[f64]), rate: f64, band: (f64, f64)) -> Metric {
+    let longest = 2 * of.0.len().min(of.1.len()) / (FEWEST_OF_POWER + 1);
+    if longest < SHORTEST {
+        return undefined("the section is too short for four windows");
+    }
+    let window = (longest / 2 + 1).next_power_of_two();
+    let spectra = Spectra::of(of, window, Trend::Line)?;
+    let mut least = 1.0_f64;
+    for line in spectra.lines(rate, band)? {
+        let (simulated, measured) = (spectra.of_simulated[line], spectra.of_measured[line]);
+        if simulated.min(measured) <= 0.0 {
+            return undefined("one of the signals has no content at a frequency of the band");
+        }
+        least = least.min((simulated / measured).min(measured / simulated));
+    }
+    Ok(least)
 }
 
 /// What is taken away from each window.
@@ -233,6 +259,39 @@ impl Spectra {
 mod tests {
     use super::*;
     use crate::metrics::random::mixed;
+
+    /// A band that one signal lacks, and white noise by itself: with few windows the lines scatter,
+    /// not by more than two orders.
+    #[test]
+    fn a_missing_band_has_the_least_ratio() {
+        let signal = noise(2_000, 7);
+        let without = |low: f64, high: f64| {
+            let count = signal.len();
+            let forward = super::super::fourier::forward(count);
+            let mut spectrum = forward.make_output_vec();
+            forward.process(&mut signal.clone(), &mut spectrum).expect("a transform");
+            // The band is 2 to 7 Hz at 200 samples per second: its part of the signal is taken away.
+            (0..count)
+                .map(|at| {
+                    let lines = (low * 10.0) as usize..(high * 10.0) as usize;
+                    let part = |k: usize| {
+                        let turn = TAU * (k * at) as f64 / count as f64;
+                        2.0 / count as f64
+                            * (spectrum[k].re * turn.cos() - spectrum[k].im * turn.sin())
+                    };
+                    signal[at] - lines.map(part).sum::<f64>()
+                })
+                .collect::<Vec<f64>>()
+        };
+        let band = (1.0, 10.0);
+        assert_eq!(least_ratio((&signal, &signal), 200.0, band), Ok(1.0));
+        let lacking = least_ratio((&without(2.0, 7.0), &signal), 200.0, band).expect("a number");
+        assert!(lacking < 0.001, "{lacking}");
+        let unrelated = least_ratio((&noise(2_000, 8), &signal), 200.0, band).expect("a number");
+        assert!(unrelated > 0.02, "{unrelated}");
+        assert!(least_ratio((&signal[..60], &signal[..60]), 200.0, band).is_err());
+        assert!(least_ratio((&[0.0; 500], &signal[..500]), 200.0, band).is_err());
+    }
 
     /// White noise; seeds below 2^32 give independent ones.
     fn noise(count: usize, seed: u64) -> Vec<f64> {

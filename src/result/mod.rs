@@ -46,7 +46,7 @@ pub use quantity::{
     Count, Figures, GroupRegression, GroupResult, LimitFactor, Outside, QuantityResult,
     RegressionAt, RegressionFigure, RegressionPoint, Reported, Sample, StatisticResult,
 };
-pub use reason::{FindingData, Reason, UnusedSection};
+pub use reason::{FindingData, OfSections, Reason, UnusedSection};
 pub use remark::{OutlyingSection, RecordsOf, Remark, SectionOffset};
 pub use report::{Identification, ReportItem};
 pub use scope::{RecordName, Scope, StatisticName, zones};

@@ -477,6 +477,18 @@ pub enum Reason {
     },
 }
 
+/// The number that sections have together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum OfSections {
+    /// The median of their values.
+    Level,
+    /// The slope of the values found over those expected.
+    Slope,
+    /// The change of the values from the first section to the last.
+    Change,
+}
+
 /// What a finding says.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "code", rename_all = "kebab-case")]
@@ -493,12 +505,12 @@ pub enum FindingData {
         unit: String,
         required: String,
     },
-    /// A requirement that all sections meet together is not met. The value of all, or the slope over
-    /// what is expected, with its interval, and the bounds.
+    /// A requirement that all sections meet together is not met: the number that is compared, with
+    /// its interval, and the bounds.
     OverSections {
         rule: String,
         what: String,
-        slope: bool,
+        of: OfSections,
         value: f64,
         low: f64,
         high: f64,
@@ -581,6 +593,8 @@ pub enum FindingData {
         by: Vec<Beyond>,
         nearest: Option<String>,
     },
+    /// Sections of which there are measured records, and which the table does not name.
+    NotInTable { sections: Vec<String> },
     /// Of points of wanted operation nothing can be said.
     NoDomain { title: String, scope: Option<String>, reason: Reason, points: usize },
 }
@@ -614,8 +628,8 @@ impl FindingData {
             (Self::Required { required, .. }, Self::Required { required: other_one, .. }) => {
                 self.rule() == other.rule() && required == other_one
             }
-            (Self::OverSections { slope, .. }, Self::OverSections { slope: other_one, .. }) => {
-                self.rule() == other.rule() && slope == other_one
+            (Self::OverSections { of, .. }, Self::OverSections { of: other_one, .. }) => {
+                self.rule() == other.rule() && of == other_one
             }
             (Self::Copies { .. }, Self::Copies { .. })
             | (Self::Exchanged { .. }, Self::Exchanged { .. })

@@ -136,7 +136,7 @@ mod tests {
     use crate::result::{Channels, FindingData, Reason, Remark, Sections, Unmatched, VehicleValue};
 
     /// A value for a field, whatever its type: the first that fits.
-    const FITS: [&str; 14] = [
+    const FITS: [&str; 15] = [
         "3",
         "\"word\"",
         "true",
@@ -151,6 +151,7 @@ mod tests {
         "[{\"vehicle\": \"a\", \"value\": {\"code\": \"si\", \"value\": 2.0}}]",
         "[]",
         "{\"code\": \"nothing-to-confirm\"}",
+        "\"slope\"",
     ];
 
     /// Words in backticks of an error: the variants, or the field that is missing.

@@ -18,7 +18,7 @@ const REMARKS: [&str; 8] = [
 ];
 
 /// The code under which records that the table of sections leaves out are told.
-pub const LEFT_OUT: &str = "left-out";
+pub const LEFT_OUT: &str = "not-in-table";
 
 /// An evaluation, in the words of `results.json`.
 #[derive(Clone, Debug, Default)]
@@ -65,11 +65,6 @@ impl Answer {
                 findings.push(Found::removed(section));
             }
         }
-        findings.extend(list(&results["removed"]["left_out"]).map(|name| Found {
-            code: LEFT_OUT.into(),
-            guessed: false,
-            places: vec![Place { section: text(name), ..Place::default() }],
-        }));
         let mut shares = BTreeMap::new();
         for quantity in list(&results["quantities"]) {
             for statistic in list(&quantity["statistics"]) {

@@ -22,8 +22,8 @@ fn gain(kind: &str) -> &'static [&'static str] {
     }
 }
 
-const OFFSET: &[&str] = &["vertical_siblings"];
-const DRIFT: &[&str] = &["drift"];
+const OFFSET: &[&str] = &["vertical_siblings", "guiding_zero"];
+const DRIFT: &[&str] = &["drift", "vertical_drift", "guiding_drift"];
 /// Rules that name the static load of the vehicle file, or another load.
 const LOAD: &[&str] = &["total_load", "modelled_load", "static_load"];
 
@@ -204,7 +204,7 @@ pub const KINDS: &[Kind] = &[
             says: format!("clock of the {} of {} times", side.folders()[0], list(&sections)),
             size: Size::Fact(factor),
             told,
-            right: &["running_speed"],
+            right: &["running_speed", "clock"],
             put: Box::new(move |folder, size| {
                 folder
                     .channel(side, &sections, "time", |values, _, _| each(values, |_, v| size * v));

@@ -9,9 +9,10 @@ use super::signal::{deviation, with_noise};
 const EXCHANGED: &[&str] = &["exchanged"];
 /// Rules that name an exchange of the left and the right wheel.
 const SIDES: &[&str] = &["exchanged", "load_transfer"];
-const COPIES: &[&str] = &["copies"];
+/// Rules that name a copy; `exchanged` does where two records or channels are nearly the same.
+const COPIES: &[&str] = &["copies", "exchanged"];
 /// Rules that name records of other sections in a section.
-const SECTIONS_EXCHANGED: &[&str] = &["exchanged_sections"];
+const SECTIONS_EXCHANGED: &[&str] = &["exchanged"];
 /// Rules that name an exchange of both folders.
 const FOLDERS: &[&str] = &["exchanged_folders"];
 /// Rules that name a sensor at another place.

@@ -17,7 +17,7 @@ const GAPS: &[&str] = &["interrupted", "live"];
 /// The distance of what follows is shifted.
 const LOST: &[&str] = &["aligned", "lost_rows"];
 const STAIRS: &[&str] = &["repeated_samples"];
-const FILTERED: &[&str] = &["filtered"];
+const FILTERED: &[&str] = &["filtered", "lacking"];
 const LINE: &[&str] = &["hum", "hum_vertical"];
 const WANDER: &[&str] = &["drift"];
 const NOISE: &[&str] = &["noise", "noisy", "noisy_guiding", "noisy_simulation"];

@@ -73,12 +73,10 @@ impl Plausibility {
     pub fn rank(&self) -> u8 {
         match &self.test {
             _ if self.concerns_record => 0,
-            Test::Require(requirement)
-                if requirement.of_size() || requirement.of_one_channel(&self.signals) =>
-            {
-                1
-            }
-            _ => 2,
+            Test::Require(requirement) if requirement.of_one_channel(&self.signals) => 1,
+            // A fault of single samples, or noise, changes the scatter, too.
+            Test::Require(requirement) if requirement.of_size() => 2,
+            _ => 3,
         }
     }
 
@@ -178,10 +176,12 @@ impl Relation {
 }
 
 /// A requirement that the sections of a campaign meet together.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct OverSections {
-    /// Bounds of the slope of the values found over those expected, where it is asked for.
-    pub slope: Option<(f64, f64)>,
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum OverSections {
+    /// The median of the sections, and bounds of the slope of the values found over those expected.
+    Level { slope: Option<(f64, f64)> },
+    /// The change of what is found less what is expected, from the first section to the last.
+    Change,
 }
 
 /// The records that a requirement uses.

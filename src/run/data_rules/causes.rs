@@ -92,7 +92,9 @@ pub fn by_cause(plan: &Plan, sections: usize, findings: Vec<Finding>) -> Vec<Fin
     joined.sort_by_key(|finding| match finding.first.data {
         // A channel that is late agrees with that of a wheelset behind.
         FindingData::Exchanged { .. } => (0, usize::MAX),
-        _ => order.get(finding.code.as_str()).copied().unwrap_or((u8::MAX, 0)),
+        // Any fault of a channel makes it agree less.
+        FindingData::Matched { section: None, .. } => (u8::MAX, 0),
+        _ => order.get(finding.code.as_str()).copied().unwrap_or((u8::MAX, 1)),
     });
     let mut kept: Vec<(Finding, Reach)> = Vec::new();
     for finding in joined {

@@ -8,7 +8,7 @@ use crate::check::evaluate::words;
 use crate::check::plan::{Comparison, OverSections, Plan, Plausibility, Relation, Test};
 use crate::metrics::robust::{Estimate, level, slope};
 use crate::metrics::statistics::median;
-use crate::result::{Finding, FindingData, Occurrence, Reason};
+use crate::result::{Finding, FindingData, Occurrence, OfSections, Reason};
 use crate::run::sections::Unit;
 use crate::run::values::{Pooled, SectionValues};
 
@@ -57,35 +57,46 @@ fn finding(
 
 /// What is not as it must be, SI, and the bounds.
 struct Violated {
-    slope: bool,
+    what: OfSections,
     found: Estimate,
     least: Option<f64>,
     most: Option<f64>,
 }
 
-/// What is required and lies outside its bounds with its whole interval, the slope first.
+/// What is required and lies outside its bounds with its whole interval, the slope first. The
+/// sections are in the order of their table.
 fn violated(asked: OverSections, compared: &Comparison, of: &[&Pooled]) -> Option<Violated> {
     let list = |take: fn(&Pooled) -> f64| of.iter().map(|one| take(one)).collect::<Vec<f64>>();
     let (found, expected) = (list(|one| one.found), list(|one| one.expected));
     let bounds = median(&expected)?;
-    let outside = |slope: bool, found: Estimate, least: Option<f64>, most: Option<f64>| {
+    let outside = |what: OfSections, found: Estimate, least: Option<f64>, most: Option<f64>| {
         let beyond = most.is_some_and(|most| found.low > most)
             || least.is_some_and(|least| found.high < least);
-        beyond.then_some(Violated { slope, found, least, most })
+        beyond.then_some(Violated { what, found, least, most })
     };
     match &compared.relation {
-        Relation::AtMost => outside(false, level(&found)?, None, Some(bounds)),
-        Relation::AtLeast => outside(false, level(&found)?, Some(bounds), None),
+        Relation::AtMost => outside(OfSections::Level, level(&found)?, None, Some(bounds)),
+        Relation::AtLeast => outside(OfSections::Level, level(&found)?, Some(bounds), None),
         Relation::WithinFactor => None,
         Relation::Within(_) => {
-            if let Some((least, most)) = asked.slope
+            if let OverSections::Level { slope: Some((least, most)) } = asked
                 && let Some(steep) = slope(&expected, &found)
-                && let Some(violated) = outside(true, steep, Some(least), Some(most))
+                && let Some(violated) = outside(OfSections::Slope, steep, Some(least), Some(most))
             {
                 return Some(violated);
             }
             let room = median(&list(|one| one.room))?;
-            outside(false, level(&list(|one| one.found - one.expected))?, Some(-room), Some(room))
+            let beyond = list(|one| one.found - one.expected);
+            let (what, all) = match asked {
+                OverSections::Level { .. } => (OfSections::Level, level(&beyond)?),
+                OverSections::Change => {
+                    // From the first section to the last, where the line is.
+                    let last = beyond.len() as f64 - 1.0;
+                    let order: Vec<f64> = (0..beyond.len()).map(|at| at as f64 / last).collect();
+                    (OfSections::Change, slope(&order, &beyond)?)
+                }
+            };
+            outside(what, all, Some(-room), Some(room))
         }
     }
 }
@@ -96,20 +107,21 @@ fn data(
     of: &Violated,
 ) -> FindingData {
     let what = words(&compared.found);
-    let shown = |value: f64| if of.slope { value } else { compared.unit.from_si(value) };
+    let is_slope = of.what == OfSections::Slope;
+    let shown = |value: f64| if is_slope { value } else { compared.unit.from_si(value) };
     FindingData::OverSections {
         rule: rule.title.clone(),
         what: match compared.relation {
-            Relation::Within(_) if !of.slope => format!("{what} - {}", words(&compared.expected)),
+            Relation::Within(_) if !is_slope => format!("{what} - {}", words(&compared.expected)),
             _ => what,
         },
-        slope: of.slope,
+        of: of.what,
         value: shown(of.found.value),
         low: shown(of.found.low),
         high: shown(of.found.high),
         least: of.least.map(shown),
         most: of.most.map(shown),
-        unit: if of.slope { String::new() } else { compared.unit.text.clone() },
+        unit: if is_slope { String::new() } else { compared.unit.text.clone() },
         sections,
     }
 }

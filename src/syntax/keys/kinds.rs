@@ -361,7 +361,7 @@ pub const KINDS: &[Kind] = &[
             ),
             phrase(
                 "over",
-                "`sections`: all sections meet the condition together, and not each: the median of their values, with its uncertainty.",
+                "`sections`: all sections meet the condition together, and not each: the median of their values, with its uncertainty. `order of sections`: their change from the first section of the table to the last.",
                 "sections",
             ),
             phrase(
