@@ -117,10 +117,14 @@ impl Found {
     fn read(finding: &Value) -> Self {
         // Samples for which no rule can be checked are told with their own reason.
         let of_samples = &finding["data"]["reason"]["code"];
+        let mut places: Vec<Place> = list(&finding["places"]).map(Place::read).collect();
+        if places.is_empty() {
+            places.push(Place::read(finding));
+        }
         Self {
             code: text(if of_samples.is_string() { of_samples } else { &finding["code"] }),
             guessed: finding["cause_data"]["code"] == "both",
-            places: list(&finding["places"]).map(Place::read).collect(),
+            places,
         }
     }
 
