@@ -594,3 +594,34 @@ fn records_that_do_not_belong_together() {
     });
     assert_eq!((wheelsets[0].code.as_str(), wheelsets.len()), ("exchanged", 1), "{wheelsets:?}");
 }
+
+/// A channel that drifts by 20 kN over the campaign, a speed that the vehicle is not admitted for,
+/// and records without a row in the table.
+#[test]
+fn what_only_all_sections_or_the_table_show_is_told() {
+    let codes = |change: &dyn Fn(&mut Folder, &[String])| -> Vec<String> {
+        let found = with(|folder| {
+            let sections = folder.sections("");
+            change(folder, &sections);
+        });
+        let all = found.findings.iter().flat_map(Finding::with_explained);
+        all.map(|finding| finding.code.clone()).collect()
+    };
+    let drifts = codes(&|folder, sections| {
+        for (at, section) in sections.iter().enumerate() {
+            let by = 20.0 * at as f64 / sections.len() as f64;
+            let section = std::slice::from_ref(section);
+            folder.channels(Side::Measurement, section, &["Q_1L"], |values| {
+                values.iter().map(|value| value + by).collect()
+            });
+        }
+    });
+    assert!(drifts.iter().any(|code| code == "vertical_drift"), "{drifts:?}");
+    let fast = codes(&|folder, sections| *folder.cell(&sections[0], "speed") = "400".into());
+    assert!(fast.iter().any(|code| code == "test_speed"), "{fast:?}");
+    let fewer = codes(&|folder, sections| {
+        let table = folder.tables.get_mut("sections.csv").expect("a table");
+        table.rows.retain(|row| row[0] != sections[0]);
+    });
+    assert!(fewer.iter().any(|code| code == "not-in-table"), "{fewer:?}");
+}
