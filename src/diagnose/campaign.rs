@@ -1,7 +1,7 @@
 //! Diagnosis of a campaign: identification of effects, the corrected simulation, and the protocol
 //! evaluated again.
 
-use super::answer::shrink::{
+use super::answer::decrease::{
     applied, compare, folds, improved, of_sections, shares, trained, within,
 };
 use super::held_out::HeldOut;
@@ -13,10 +13,9 @@ use crate::data::Campaign;
 use crate::data::origin::OriginEffect;
 use crate::data::record::Format;
 use crate::data::write::Outputs;
-use crate::diagnose::features::observations::Observations;
-use crate::diagnose::features::observed::Observed;
-use crate::diagnose::levels::campaign::{EARNED, STRONG};
-use crate::diagnose::uncertainty::whiten::{dot, less};
+use crate::diagnose::linearise::whiten::{dot, less};
+use crate::diagnose::observe::observations::Observations;
+use crate::diagnose::observe::observed::Observed;
 use crate::effects::{Applied, Catalogue, Gauss, Signals};
 use crate::problem::{Problem, Problems};
 use crate::result::diagnosis::{Diagnosis, HeldOut as OnHeldOut};
@@ -63,7 +62,7 @@ pub fn diagnose(
 ) -> Result<Outcome, Problems> {
     let compiled = &compiled.only_telling();
     let mut problems = Problems::default();
-    crate::diagnose::features::columns::in_words_of(
+    crate::diagnose::observe::columns::in_words_of(
         compiled,
         inputs.settings,
         inputs.campaign,
@@ -87,7 +86,7 @@ pub fn diagnose(
     }
     let (sections, held) =
         HeldOut::split(inputs.campaign, sections).map_err(|problem| Problems(vec![problem]))?;
-    let Some(mut found) = find(inputs, sections, &mut problems) else { return Err(problems) };
+    let Some(found) = find(inputs, sections, &mut problems) else { return Err(problems) };
     let (what, held) = match held {
         Some((held, sections)) => {
             (Some(held), unseen_sections(inputs, &found, sections, &mut problems)?)
@@ -137,25 +136,13 @@ pub fn diagnose(
         low: None,
         high: None,
     };
-    while !found.answer.chosen.members.is_empty() {
-        if let Some((either, reason)) =
-            super::answer::causes::nothing_out_of_the_ordinary(&found, inputs.settings)
-        {
-            found.refuse(either, reason, inputs);
-            continue;
-        }
+    if !found.answer.chosen.members.is_empty() {
         (inputs.trying)("the protocol with the effects");
         let all = applied(&found, &found.answer.chosen.members);
         held_records =
             improved(&held, inputs.catalogue, inputs.simulator, &|_| all.clone()).map_err(one)?;
-        let made = with(&found, &unseen(inputs, &found, None)?, &held_records)?;
+        let made = with(&found, &unseen(inputs, &found)?, &held_records)?;
         let fit_before = of_sections(&before, &fitted);
-        if let Some((idle, reason)) =
-            idle(inputs, &found, &fit_before, &of_sections(&made, &fitted), &evaluate)?
-        {
-            found.refuse(idle, reason, inputs);
-            continue;
-        }
         let noise =
             noisy(&found, inputs.seed).map(|records| evaluate(&found, &records)).transpose()?;
         if held_out.named {
@@ -177,7 +164,6 @@ pub fn diagnose(
             improved(&found.seen.sections, inputs.catalogue, inputs.simulator, &|_| all.clone())
                 .map_err(one)?;
         added = effects_of_origin(&all, inputs.catalogue);
-        break;
     }
     let protocol = (before.verdict, after.as_ref().map(|after: &Certification| after.verdict));
     let mut diagnosis =
@@ -229,19 +215,10 @@ fn named<'a>(
     found.seen.sections.iter().map(|observed| observed.section.name()).zip(records)
 }
 
-/// Records with the effects. The sizes for a section are fitted to the other folds. `without`
-/// excludes one member.
-fn unseen(
-    inputs: &Inputs<'_>,
-    found: &Found,
-    without: Option<usize>,
-) -> Result<Vec<Signals>, Problems> {
+/// Records with the effects. The sizes for a section are fitted to the other folds.
+fn unseen(inputs: &Inputs<'_>, found: &Found) -> Result<Vec<Signals>, Problems> {
     let folds = folds(&found.strata);
-    let effects = |fold: &Vec<usize>| {
-        let mut effects = applied(found, &trained(found, fold));
-        without.map(|member| effects.remove(member));
-        effects
-    };
+    let effects = |fold: &Vec<usize>| applied(found, &trained(found, fold));
     let fitted: Vec<Vec<Applied>> = folds.iter().map(effects).collect();
     let of = |at: usize| {
         folds
@@ -273,46 +250,6 @@ fn noisy(found: &Found, seed: u64) -> Option<Vec<Signals>> {
         };
         seen.sections.iter().map(&mut with_noise).collect()
     })
-}
-
-type Evaluate<'a> = &'a dyn Fn(&Found, &[Signals]) -> Result<Certification, Problems>;
-
-/// The member that removes the smallest share of the gap on sections excluded from the fit, if that
-/// share is too small, and the reason. Effects that change no quantity of the protocol are not
-/// judged.
-fn idle(
-    inputs: &Inputs<'_>,
-    found: &Found,
-    before: &Certification,
-    after: &Certification,
-    evaluate: Evaluate<'_>,
-) -> Result<Option<(usize, String)>, Problems> {
-    let count = found.answer.chosen.members.len();
-    let mut worst: Option<(usize, f64)> = None;
-    for member in 0..count {
-        let without = if count == 1 {
-            before.clone()
-        } else {
-            evaluate(found, &unseen(inputs, found, Some(member))?)?
-        };
-        let earned = compare(&without, after, None, inputs.seed, Vec::new());
-        let Some(touched) = earned.touched else { continue };
-        // Means over signals may hide a change of single values.
-        let by_value = 1.0 - (1.0 - touched.variance_explained).max(0.0).sqrt();
-        let most = touched.fraction_removed.max(earned.fraction_removed).max(by_value);
-        // The protocol has few numbers. An effect with strong evidence is therefore refused only if
-        // it increases the gap.
-        let member_of = &found.answer.chosen.members[member];
-        let strength = member_of.evidence / (STRONG * found.rates.bars.first);
-        let least =
-            if strength >= 1.0 && !member_of.doubtful { -EARNED * strength } else { EARNED };
-        if most < least && worst.is_none_or(|(_, least)| most < least) {
-            worst = Some((member, most));
-        }
-    }
-    Ok(worst.map(|(member, most)| {
-        (member, format!("on sections excluded from the fit it removes {:.0} % of the gap in the quantities that it affects", 100.0 * most))
-    }))
 }
 
 /// Influence of effects that are known to be true.
@@ -364,8 +301,8 @@ pub fn effect_of_truth(
             improved(&found.seen.sections, catalogue, simulator, &|_| others.clone()).ok()?;
         let others = changed(&records);
         Some(across(
-            &found.allowed.alone.whitener.apply(&less(&change, &others)),
-            &found.allowed.alone.whitener.apply(&others),
+            &found.alone.whitener.apply(&less(&change, &others)),
+            &found.alone.whitener.apply(&others),
         ))
     };
     let several = if effects.len() > 1 { 0..effects.len() } else { 0..0 };
@@ -385,10 +322,10 @@ pub fn effect_of_truth(
     let (before, made) = (of_sections(&outcome.before, &fitted), of_sections(&made, &fitted));
     let settings = Settings::read(catalogue, &mut Problems::default())?;
     Some(Really {
-        detectability: super::run::length(&found.allowed.alone.whitener, &change),
+        detectability: super::run::length(&found.alone.whitener, &change),
         weakest: several.filter_map(beside).reduce(f64::min),
         removed: compare(&before, &made, None, 1, Vec::new()).fraction_removed,
-        cells: crate::diagnose::localisation::locate::moved(&settings, found, &change),
+        cells: crate::diagnose::describe::locate::moved(&settings, found, &change),
     })
 }
 

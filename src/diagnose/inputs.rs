@@ -2,7 +2,7 @@
 
 use super::settings::Settings;
 use crate::data::Campaign;
-use crate::diagnose::features::cache::Cache;
+use crate::diagnose::observe::cache::Cache;
 use crate::effects::Catalogue;
 use crate::model::parameter;
 use crate::simulate::Simulator;

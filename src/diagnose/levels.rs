@@ -84,6 +84,10 @@ pub mod covariance {
     pub const BAND_SCATTER: f64 = 0.25;
     /// Variance of a gain, times the length of the record in s.
     pub const GAIN_SCATTER: f64 = 0.1;
+    /// Scatter of the zero point of a channel between sections, as a share of its declared offset:
+    /// records of heavy vehicles, whose transducers have larger offsets, scatter by 0.6 kN where
+    /// 1.1 kN is declared.
+    pub const ZERO_POINT: f64 = 0.6;
     /// Variance of a feature that carries no information.
     pub const NOTHING: f64 = 1e12;
 }
@@ -130,12 +134,6 @@ pub mod cells {
 }
 
 pub mod invariants {
-    /// Probability of the deviation, among all invariants tested (Bonferroni), below which it is
-    /// significant. The covariance of sums of forces is small and well known, so that this level is
-    /// not stricter.
-    pub const CHANCE: f64 = 0.01;
-    /// Least share of the deviation that the causes must remove.
-    pub const TAKES: f64 = 0.5;
     /// Deviation from which an invariant is reported, in standard deviations.
     pub const WORTH: f64 = 3.0;
 }
@@ -174,53 +172,10 @@ pub mod trends {
     pub const CERTAIN: f64 = 1e-5;
 }
 
-pub mod further {
-    /// Number of candidates simulated together with the members, and their least distance from
-    /// neutral as a share of the threshold.
-    pub const TRIED: usize = 3;
-    pub const FAR: f64 = 0.5;
-    /// How often a chosen candidate is simulated again, and the relative change of the other sizes
-    /// that requires it.
-    pub const ROUNDS: usize = 3;
-    pub const MOVED: f64 = 0.02;
-    /// Distance of further simulated sizes from a size, as a share of its distance from neutral.
-    pub const APART: f64 = 0.15;
-}
-
 pub mod workshop {
     /// How far beyond the plausible range an operation is applied, as a share of the distance from
     /// neutral.
     pub const BEYOND: f64 = 0.2;
-}
-
-pub mod chosen {
-    /// Declared standard deviations from which an effect on a tolerated parameter is named: the
-    /// declared value is itself an estimate.
-    pub const TOLERANCE_SD: f64 = 3.5;
-    /// Share of the evidence that a confinement must add: excluding the sections that fit worst
-    /// always adds some.
-    pub const CONFINED: f64 = 0.15;
-    /// Cosine of two whitened changes below which the members compensate each other.
-    pub const UNDONE: f64 = -0.6;
-    /// Number of unnamed candidates that are reported, and their least evidence.
-    pub const TOLD: usize = 3;
-    pub const TELLING: f64 = 10.0;
-}
-
-pub mod converge {
-    /// Least evidence of a cause: real discrepancies deviate from the assumed covariance.
-    pub const FLOOR: f64 = 30.0;
-    /// The same for an operation on the signals, which such discrepancies do not affect: half as
-    /// much; 10 is called very strong (Kass and Raftery 1995).
-    pub const FLOOR_EXACT: f64 = 15.0;
-    /// Least evidence that a confinement adds; its choice has a price as well.
-    pub const CONFINED: f64 = 15.0;
-    /// Largest number of effects in an answer.
-    pub const MOST: usize = 3;
-    /// All sizes of a candidate are simulated from this share of the largest evidence on, and from
-    /// this evidence on.
-    pub const NEAR: f64 = 0.5;
-    pub const WORTH: f64 = 10.0;
 }
 
 pub mod calibration {
@@ -243,33 +198,6 @@ pub mod fit {
     pub const APART: f64 = 0.05;
 }
 
-pub mod guards {
-    /// Least share of the evidence without any one section, unless the remaining evidence is
-    /// sufficient by itself.
-    pub const KEPT: f64 = 0.5;
-    pub const ENOUGH: f64 = 60.0;
-    /// Where one section shows most of an effect, the others need this share of their expected
-    /// evidence, and very strong evidence (Kass and Raftery 1995).
-    pub const EXPECTED: f64 = 0.5;
-    pub const VERY_STRONG: f64 = 10.0;
-    /// A view contradicts an effect if its share of the size is below this, by this many standard
-    /// errors below the joint size.
-    pub const SOME: f64 = 0.45;
-    pub const SURE: f64 = 3.0;
-    /// Standard error of a view's size, as a share of the joint size, up to which the view is
-    /// compared.
-    pub const PRECISE: f64 = 0.35;
-    /// Quantile of Cochran's Q from which views differ, and the least difference of their sizes, as
-    /// a share of the joint size.
-    pub const HETEROGENEOUS: f64 = 0.99;
-    pub const DIFFERENT: f64 = 0.6;
-    /// Model error as a share of the size in any view; in addition, as a share of the whole effect,
-    /// limited to a share of the expected change in the view.
-    pub const MODEL: f64 = 0.15;
-    pub const SPILL: f64 = 0.1;
-    pub const SPILT: f64 = 0.3;
-}
-
 pub mod joint {
     /// Rounds in which the model error is computed again for the fitted sizes, and the change of
     /// the shares that ends them.
@@ -279,87 +207,6 @@ pub mod joint {
     /// Similar changes converge slowly.
     pub const TURNS: usize = 200;
     pub const CONVERGED: f64 = 1e-8;
-}
-
-pub mod lack {
-    /// Lack of fit of a channel from which the residual is significant, in standard deviations of
-    /// chi-squared.
-    pub const LACK: f64 = 5.0;
-    /// Largest ratio of the excess of the channels with a member to that without it: some effects
-    /// increase other channels.
-    pub const WORSE: f64 = 1.1;
-    /// Increase of the excess that is negligible against some thousand features.
-    pub const LITTLE: f64 = 10.0;
-    /// The gap is unexplained if more than this share of the excess remains in several channels, or
-    /// in one that exceeds [`LACK`] by this factor.
-    pub const MOST_LEFT: f64 = 0.5;
-    pub const FAR_BEYOND: f64 = 3.0;
-    /// One section in this many may be an outlier, such as a wheelset that reaches the flange on
-    /// one side of the comparison only.
-    pub const ONE_IN: usize = 8;
-}
-
-pub mod place {
-    /// A tolerance whose change of the features is below this, in standard deviations of all else,
-    /// is not simulated again: the scatter of contact solutions alone reaches about one.
-    pub const MATTERS: f64 = 1.5;
-    /// Relative difference of sizes up to which the simulated tolerances are reused.
-    pub const ALIKE: f64 = 0.1;
-}
-
-pub mod sets {
-    /// Number of candidates whose joint evidence is computed, of those with the most evidence for
-    /// what a set leaves; and their least one. With the members fixed, an effect similar to a
-    /// member has little evidence left.
-    pub const TRIED: usize = 16;
-    pub const WORTH: f64 = 5.0;
-    /// Number of first effects beside which every second one is tried. The best single effect need
-    /// not be a member of the best pair.
-    pub const FIRSTS: usize = 5;
-    /// Gain of evidence from which another candidate replaces a member: the least called positive
-    /// (Kass and Raftery 1995).
-    pub const BETTER: f64 = 2.0;
-    /// Rounds of replacement.
-    pub const ROUNDS: usize = 4;
-}
-
-pub mod settle {
-    /// Range of a lag between half and one and a half times an effect, in standard deviations, from
-    /// which the lag is excluded.
-    pub const JUMP: f64 = 5.0;
-    /// Maximum number of refits with the fitted sizes simulated, and the convergence criterion as a
-    /// share of the size.
-    pub const ROUNDS: usize = 3;
-    pub const ALIKE: f64 = 0.01;
-}
-
-pub mod stability {
-    /// Candidates with at least this share of a member's evidence are compared with it.
-    pub const NEAR: f64 = 0.3;
-    /// Least share of the resamples in which a member must be first, that is, have the most
-    /// evidence.
-    pub const FIRST: f64 = 0.5;
-    /// Share of the resamples from which a member counts as certain, of either sign.
-    pub const SURE: f64 = 0.95;
-}
-
-pub mod suspects {
-    /// Factors simulated for every parameter (1 is neutral), and further ones for the strongest.
-    pub const COARSE: [f64; 2] = [0.45, 1.8];
-    pub const FINE: [f64; 5] = [0.25, 0.35, 0.7, 1.3, 2.5];
-    /// Maximum number of parameters with further factors, and their least evidence as a share of
-    /// the answer's.
-    pub const MOST: usize = 2;
-    pub const NEAR: f64 = 0.15;
-    /// Maximum number of refits with the fitted factor simulated, and the convergence criterion.
-    pub const ROUNDS: usize = 2;
-    pub const ALIKE: f64 = 0.02;
-    /// Evidence in excess of the answer's from which the verdict is ambiguous: the threshold of a
-    /// single cause. With this share of the answer's evidence in excess, the answer is rejected.
-    pub const BETTER: f64 = 30.0;
-    pub const BETTER_SHARE: f64 = 0.5;
-    /// Cosine of two whitened changes above which they count as the same cause.
-    pub const SAME: f64 = 0.8;
 }
 
 pub mod pictures {
@@ -393,19 +240,6 @@ pub mod rivals {
     pub const TOLD_APART: f64 = 5.0;
 }
 
-pub mod shrink {
-    /// Number of folds for cross-validation, stratified.
-    pub const FOLDS: usize = 4;
-    /// An effect touches a quantity if the root mean square change of its values exceeds this share
-    /// of the limit of their standard deviation.
-    pub const TOUCHED: f64 = 0.1;
-}
-
-pub mod steady {
-    /// Share of a squared length below which it counts as rounding error.
-    pub const NOTHING: f64 = 1e-9;
-}
-
 pub mod verdict {
     /// Ratio of chi-squared to the number of features from which the fit is refuted: what is left
     /// is then on average 1.4 times as large as noise, tolerances and model discrepancy together.
@@ -417,15 +251,9 @@ pub mod verdict {
 pub mod words {
     /// Trends with a probability below this are reported, whether significant or not.
     pub const TOLD: f64 = 0.05;
-}
-
-pub mod campaign {
-    /// Least share of the gap that an effect must remove in the quantities that it changes.
-    pub const EARNED: f64 = 0.05;
-    /// Evidence, in thresholds, from which an effect need not reduce the gap. It may then increase
-    /// the gap by [`EARNED`] times the evidence in these units, since a gap masked by a second
-    /// effect increases when one of the two is corrected.
-    pub const STRONG: f64 = 4.0 / 3.0;
+    /// Number of unnamed candidates that are reported, and their least evidence.
+    pub const TOLD_NEAREST: usize = 3;
+    pub const TELLING: f64 = 10.0;
 }
 
 pub mod preflight {
@@ -438,4 +266,114 @@ pub mod preflight {
 pub mod score {
     /// Whitened length, in standard deviations, from which an effect counts as detectable.
     pub const DETECTABLE: f64 = 5.0;
+}
+
+pub mod search {
+    /// Largest number of effects in an answer.
+    pub const MOST: usize = 3;
+    /// Number of candidates whose joint evidence is computed, of those with the most evidence for
+    /// what a set leaves; of second effects and replacements; and their least evidence. With the
+    /// members fixed, an effect similar to a member has little evidence left.
+    pub const TRIED: usize = 16;
+    pub const SECONDS: usize = 6;
+    pub const WORTH: f64 = 5.0;
+    /// Number of first effects beside which second ones are tried. The best single effect need not
+    /// be a member of the best pair.
+    pub const FIRSTS: usize = 5;
+    /// Gain of evidence of a step: the least called positive (Kass and Raftery 1995).
+    pub const BETTER: f64 = 2.0;
+    /// Declared standard deviations from which an effect on a tolerated parameter is named: the
+    /// declared value is itself an estimate.
+    pub const TOLERANCE_SD: f64 = 3.5;
+    /// Least evidence that a confinement adds, and as a share of the evidence of the effect:
+    /// excluding the sections that fit worst always adds some.
+    pub const CONFINED: f64 = 15.0;
+    pub const CONFINED_SHARE: f64 = 0.15;
+}
+
+pub mod iterate {
+    /// Least evidence of a cause: real discrepancies deviate from the assumed covariance.
+    pub const FLOOR: f64 = 30.0;
+    /// The same for an operation on the signals, which such discrepancies do not affect: half as
+    /// much; 10 is called very strong (Kass and Raftery 1995).
+    pub const FLOOR_EXACT: f64 = 15.0;
+    /// All sizes of a candidate are simulated from this share of the largest evidence on, and from
+    /// this evidence on.
+    pub const NEAR: f64 = 0.5;
+    pub const WORTH: f64 = 10.0;
+    /// Number of further candidates that are simulated at the point.
+    pub const NEAREST: usize = 3;
+    /// Largest number of rounds, and of fits within one with the fitted sizes simulated.
+    pub const ROUNDS: usize = 4;
+    pub const POLISHED: usize = 3;
+    /// Relative difference of sizes up to which the answer stands still.
+    pub const STILL: f64 = 0.1;
+}
+
+pub mod point {
+    /// Relative difference of sizes up to which a simulated one serves for a fitted one.
+    pub const ALIKE: f64 = 0.01;
+    /// Least distance of the sizes to either side of a fitted one, as a share of its distance from
+    /// neutral: over less, scatter of contact solutions exceeds the change.
+    pub const APART: f64 = 0.15;
+    /// A tolerance whose change of the features is below this, in standard deviations of all else,
+    /// is not simulated again: the scatter of contact solutions alone reaches about one.
+    pub const MATTERS: f64 = 1.5;
+    /// Range of a lag between half and one and a half times an effect, in standard deviations, from
+    /// which the lag is excluded.
+    pub const JUMP: f64 = 5.0;
+}
+
+pub mod heterogeneity {
+    /// Probability below which the sizes differ, among all tests (Bonferroni). Real responses
+    /// deviate from simulated ones: right answers had 1e-6 at least.
+    pub const CHANCE: f64 = 1e-5;
+    /// Least length of the change in a part of a view, in standard deviations.
+    pub const SEEN: f64 = 2.0;
+}
+
+pub mod further {
+    /// Span of the path of a free tolerance, in declared standard deviations to either side.
+    pub const SPAN: f64 = 50.0;
+    /// Cosine of two whitened changes above which they count as the same cause.
+    pub const SAME: f64 = 0.8;
+    /// Evidence of a further candidate beside an answer from which the gap is not explained: that of
+    /// two effects.
+    pub const LEFT: f64 = 60.0;
+    /// Evidence of a tolerance from which it is a gap by itself: that of a declared deviation of
+    /// four and a half.
+    pub const TOLERANCE: f64 = 15.0;
+    /// Gain of evidence from which a free tolerance in place of a member refutes the answer, and
+    /// from which it is as possible.
+    pub const REFUTES: f64 = 30.0;
+    pub const POSSIBLE: f64 = 8.0;
+}
+
+pub mod channels {
+    /// Lack of fit of a channel from which the residual is significant, in standard deviations of
+    /// chi-squared.
+    pub const LACK: f64 = 5.0;
+    /// The gap is unexplained if more than this share of the excess remains in several channels, or
+    /// in one that exceeds [`LACK`] by this factor.
+    pub const MOST_LEFT: f64 = 0.5;
+    pub const FAR_BEYOND: f64 = 3.0;
+    /// One section in this many may be an outlier, such as a wheelset that reaches the flange on
+    /// one side of the comparison only.
+    pub const ONE_IN: usize = 8;
+}
+
+pub mod stability {
+    /// Candidates with at least this share of a member's evidence are compared with it.
+    pub const NEAR: f64 = 0.3;
+    /// Least share of the resamples in which a member must be first, that is, have the most
+    /// evidence.
+    pub const FIRST: f64 = 0.5;
+}
+
+pub mod decrease {
+    /// Number of folds for cross-validation, stratified.
+    pub const FOLDS: usize = 4;
+    /// An effect touches a quantity if the root mean square change of its values exceeds this share
+    /// of the limit of their standard deviation.
+    pub const TOUCHED: f64 = 0.1;
 }

@@ -10,19 +10,20 @@
 
 pub mod answer;
 mod campaign;
-pub mod features;
+pub mod checks;
+pub mod describe;
+pub mod fit;
 mod held_out;
-pub mod inference;
 pub mod inputs;
+pub mod iterate;
 pub mod levels;
-pub mod localisation;
+pub mod linearise;
+pub mod observe;
 pub mod preflight;
-pub mod response;
 pub mod run;
 pub mod score;
-pub mod selection;
+pub mod search;
 pub mod settings;
-pub mod uncertainty;
 
 pub use campaign::{Outcome, Really, diagnose, effect_of_truth, write_improved};
-pub use features::cache::Cache;
+pub use observe::cache::Cache;

@@ -6,9 +6,9 @@ use rayon::prelude::*;
 
 use super::settings::Settings;
 use crate::data::Campaign;
-use crate::diagnose::features::layout::Kind;
-use crate::diagnose::features::observations::Observations;
 use crate::diagnose::levels::preflight::{LISTED, SEEN};
+use crate::diagnose::observe::layout::Kind;
+use crate::diagnose::observe::observations::Observations;
 use crate::effects::{Action, Applied, Catalogue, Effect, Fit, Parameter};
 use crate::problem::{Problem, Problems};
 use crate::simulate::{Plan, Section, Simulator, Task};

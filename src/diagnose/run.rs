@@ -1,4 +1,4 @@
-//! The diagnosis from end to end: features, candidates, search, guards, verdict.
+//! The diagnosis from end to end: observe, linearise, iterate, check.
 
 use std::sync::Arc;
 
@@ -6,32 +6,31 @@ use rayon::prelude::*;
 
 use super::inputs::{Inputs, value_of};
 use super::settings::Settings;
-use crate::diagnose::features::bench::Runs;
-use crate::diagnose::features::observations::Observations;
-use crate::diagnose::features::observed::Observed;
-use crate::diagnose::features::strata::strata;
-use crate::diagnose::inference::chosen::{
-    Bars, Chosen, Refused, chi_squared, contradicting, nearest,
-};
-use crate::diagnose::inference::fit::{Fitted, Fitter, Known, alone_again};
-use crate::diagnose::inference::sets::{Sets, refit};
-use crate::diagnose::response::candidate::Candidate;
-use crate::diagnose::response::ground::Ground;
-use crate::diagnose::response::mask::Mask;
-use crate::diagnose::selection::converging::{Converged, Converging};
-use crate::diagnose::selection::guards::families;
-use crate::diagnose::selection::lack::{Lack, drop_what_harms, lack_of_fit, left};
-use crate::diagnose::selection::masks::masks;
-use crate::diagnose::selection::place::{Place, Places};
-use crate::diagnose::selection::settle::{Settled, Weighed};
-use crate::diagnose::selection::stability::{Stability, stability};
-use crate::diagnose::selection::suspects::{Suspect, suspect};
-use crate::diagnose::uncertainty::declared::Declared;
-use crate::diagnose::uncertainty::whiten::{Covariance, Whitener, dot};
+use crate::diagnose::checks::channels::{Lack, lack_of_fit};
+use crate::diagnose::checks::further::{Further, free, used};
+use crate::diagnose::checks::heterogeneity::{Heterogeneity, heterogeneity, views};
+use crate::diagnose::checks::stability::{Stability, stability};
+use crate::diagnose::fit::fitter::{Fitted, Fitter};
+use crate::diagnose::fit::set::{Bars, Chosen, Refused, chi_squared};
+use crate::diagnose::iterate::point::{Linearisation, Linearise};
+use crate::diagnose::iterate::{Iterate, Iterated};
+use crate::diagnose::levels::search::TRIED;
+use crate::diagnose::linearise::candidate::Candidate;
+use crate::diagnose::linearise::covariance::{Sensitivity, covariance};
+use crate::diagnose::linearise::declared::Declared;
+use crate::diagnose::linearise::ground::{Ground, bench};
+use crate::diagnose::linearise::mask::{Mask, masks};
+use crate::diagnose::linearise::whiten::{Covariance, Whitener, dot, less};
+use crate::diagnose::linearise::workshop::Workshop;
+use crate::diagnose::observe::bench::Runs;
+use crate::diagnose::observe::observations::Observations;
+use crate::diagnose::observe::observed::Observed;
+use crate::diagnose::observe::strata::strata;
+use crate::diagnose::search::{Search, without};
 use crate::effects::{Action, Applied, Signals};
 use crate::model::parameter;
 use crate::problem::{Problem, Problems};
-use crate::result::diagnosis::Calibration;
+use crate::result::diagnosis::{Calibration, UsedTolerance};
 use crate::simulate::{Plan, Section, Task, incremented};
 
 /// Numerical results of a diagnosis.
@@ -41,46 +40,34 @@ pub struct Found {
     pub strata: Vec<Vec<usize>>,
     pub declared: Declared,
     pub ground: Ground,
-    pub allowed: Allowed,
-    pub candidates: Vec<Candidate>,
     pub masks: Vec<Mask>,
+    /// Covariance of noise and tolerances alone.
+    pub tolerated: Covariance,
+    /// The linearisation without effects.
+    pub alone: Arc<Linearisation>,
+    /// The linearisation at the answer.
+    pub fitted: Arc<Linearisation>,
     pub answer: Answer,
     pub rates: Rates,
     pub runs: Runs,
-}
-
-/// The allowed difference.
-#[derive(Debug)]
-pub struct Allowed {
-    /// Covariance of noise and tolerances alone.
-    pub tolerated: Covariance,
-    /// The weighing without effects.
-    pub alone: Arc<Place>,
-    /// The weighing with the tolerances simulated together with the answer. Residuals are judged by
-    /// it.
-    pub beside: Arc<Place>,
-    /// The same without outlying sections. Sizes are fitted by it.
-    pub settled: Arc<Place>,
-    /// All weighings that were computed.
-    places: Places,
 }
 
 /// The named effects, and what speaks for and against others.
 #[derive(Debug)]
 pub struct Answer {
     pub chosen: Chosen,
+    /// Whether names and sizes stood still in the last round.
+    pub still: bool,
     pub refused: Vec<Refused>,
     /// Other candidates in place of a member: number of the member, fit, loss of evidence.
     pub rivals: Vec<(usize, Fitted, f64)>,
-    /// Candidates with the most evidence for the residual that are not named.
+    /// Candidates with the most evidence beside the answer, nameable or not.
     pub nearest: Vec<Fitted>,
-    /// A vehicle parameter outside the catalogue that explains more than the answer.
-    pub suspect: Option<Suspect>,
-    /// Number of the first member when `suspect` was computed.
-    suspected: Option<usize>,
-    /// A candidate refused for contradictory views that has more evidence for the residual than the
-    /// answer has; with that evidence.
-    pub contradicting: Option<(Refused, f64)>,
+    /// What is left for further candidates.
+    pub further: Further,
+    /// The deviations of the tolerances that the fit used.
+    pub used: Vec<UsedTolerance>,
+    pub heterogeneity: Vec<Heterogeneity>,
     /// Stability under resampling of the sections, by member.
     pub stability: Vec<Stability>,
     /// Lack of fit by channel and kind of feature, before and after the effects are added.
@@ -191,259 +178,146 @@ fn compare_samples(
 ///
 /// Problems: records that cannot be read; no section or channel to compare.
 pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems) -> Option<Found> {
-    let admitted = Declared::read(inputs.campaign, inputs.settings, problems);
+    let settings = inputs.settings;
+    let admitted = Declared::read(inputs.campaign, settings, problems);
     if problems.errors() > 0 {
         return None;
     }
     check_tolerated(inputs, problems);
     let declared = |name: &str| admitted.get(name);
-    let settings = inputs.settings;
     (inputs.trying)("reading records");
     let unit = |channel: &str| inputs.simulator?.unit(channel);
-    let mut seen = Observations::read(
-        inputs.campaign,
-        sections,
-        inputs.catalogue,
-        settings,
-        &declared,
-        &unit,
-        problems,
-    )?;
+    let (campaign, catalogue) = (inputs.campaign, inputs.catalogue);
+    let mut seen =
+        Observations::read(campaign, sections, catalogue, settings, &declared, &unit, problems)?;
     let mut runs = Runs::default();
-    if let Err(problem) = compare_samples(inputs, &mut seen, &mut runs) {
-        problems.push(problem);
-        return None;
-    }
+    problems.value(compare_samples(inputs, &mut seen, &mut runs))?;
     let ground = Ground::find(inputs, &seen, &admitted, &mut runs, problems)?;
-    let strata = strata(&seen, settings);
-    let mut masks = masks(&seen, settings);
-    let families = families(&seen, &strata);
-    let far =
-        |candidate: &Candidate, size: f64| deviations(candidate, size, settings, &admitted, false);
-    let (alone, tolerated) = ground.alone(settings, &seen, &admitted);
+    let (strata, masks) = (strata(&seen, settings), masks(&seen, settings));
+    let far = |candidate: &Candidate, size: f64| deviations(candidate, size, settings, &admitted);
+    let (value, bench) = (|key: &str| value_of(campaign, key), bench(inputs, &seen));
+    let workshop = Workshop {
+        seen: &seen,
+        catalogue,
+        bench: bench.as_ref(),
+        ground: &ground,
+        neutral: &value,
+        trying: inputs.trying,
+    };
+    let linearise = Linearise {
+        workshop: &workshop,
+        settings,
+        value: &value,
+        declared: &declared,
+        masks: &masks,
+    };
+    let candidates = workshop.candidates(&mut runs);
+    let alone = linearise.without_effects(candidates);
+    let columns: Vec<Sensitivity> = alone.columns.iter().flatten().cloned().collect();
+    let tolerated = covariance(&seen, settings, &ground.simulated, &columns, &declared, None);
+    let iterate = Iterate {
+        linearise: &linearise,
+        far: &far,
+        false_name_rate: settings.false_name_rate,
+        seed: inputs.seed,
+    };
+    let Iterated { alone, fitted, chosen, refused, bars, false_name_rate, calibration, still } =
+        iterate.run(alone, &mut runs);
+    (inputs.trying)("checks");
     let lack_before = lack_of_fit(&alone.covariance, &seen, &alone.difference);
-    let (candidates, converged, places) =
-        ground.work(inputs, &seen, &admitted, Places::default(), |tolerances| {
-            let workshop = tolerances.workshop;
-            let mut candidates = workshop.candidates(&mut runs);
-            (inputs.trying)("weighing");
-            let converging = Converging {
-                workshop,
-                place: &alone,
-                tolerances: Some(tolerances),
-                families: &families,
-                far: &far,
-                false_name_rate: settings.false_name_rate,
-                seed: inputs.seed,
-            };
-            let converged = converging.search(&mut candidates, &mut masks, &mut runs);
-            let places = tolerances.looked_at().clone();
-            (candidates, converged, places)
-        });
-    let Converged { chosen, refused, bars, false_name_rate, calibration, known } = converged;
-    let alone = Arc::new(alone);
+    let fitter = Fitter::new(&fitted.whitener, &fitted.candidates, masks.clone());
+    let search = Search::new(&fitter, &fitted.z, &bars, &far);
+    let set = chosen.set();
+    let members = 0..set.len();
+    let mut rivals: Vec<(usize, Fitted, f64)> = members
+        .clone()
+        .flat_map(|at| {
+            let less = chosen.members[at].evidence;
+            let others = search.further(&without(&set, at), &[], TRIED).into_iter();
+            others.map(move |fit| (at, less - fit.evidence, fit))
+        })
+        .map(|(at, less, fit)| (at, fit, less))
+        .collect();
+    rivals.sort_by(|a, b| a.2.total_cmp(&b.2));
+    let stable = |at: usize| stability(&fitter, &fitted.z, &chosen, at, &strata, inputs.seed);
+    let nearest = search.further(&set, &[], TRIED);
+    let free = free((&alone, &fitted), &masks, &set, &bars, &far);
     let answer = Answer {
-        chosen,
-        refused,
-        rivals: Vec::new(),
-        nearest: Vec::new(),
-        suspect: None,
-        suspected: None,
-        contradicting: None,
-        stability: Vec::new(),
+        rivals,
+        further: Further::new(&fitted, &nearest, &free, &far),
+        nearest,
+        used: used(&fitted, &chosen),
+        heterogeneity: heterogeneity(&fitter, &chosen, &views(&seen, settings)),
+        stability: members.map(stable).collect(),
         lack_after: lack_before.clone(),
         lack_before,
+        chosen,
+        still,
+        refused,
     };
-    let allowed =
-        Allowed { tolerated, beside: alone.clone(), settled: alone.clone(), alone, places };
     let rates = Rates { bars, false_name_rate, calibration };
+    let declared = admitted;
     let mut found = Found {
         seen,
         strata,
-        declared: admitted,
+        declared,
         ground,
-        allowed,
-        candidates,
         masks,
+        tolerated,
+        alone,
+        fitted,
         answer,
         rates,
         runs,
     };
-    found.settle(inputs, false, known);
+    if !found.answer.chosen.members.is_empty() {
+        found.answer.lack_after = lack_of_fit(&found.wider(), &found.seen, &found.left());
+    }
     Some(found)
 }
 
 impl Found {
-    /// Refuses a member, then fits the others again.
-    pub fn refuse(&mut self, at: usize, reason: String, inputs: &Inputs<'_>) {
-        self.answer.refused.push(Refused::new(self.answer.chosen.members.remove(at), reason));
-        alone_again(&mut self.candidates, &self.answer.chosen.members);
-        self.settle(inputs, true, Known::new());
+    /// The residual of the answer, not whitened.
+    #[must_use]
+    pub fn left(&self) -> Vec<f64> {
+        let members = self.answer.chosen.members.iter();
+        members.fold(self.fitted.difference.clone(), |rest, member| {
+            less(&rest, &member.change(&self.fitted.candidates, &self.masks))
+        })
     }
 
-    /// Fits the answer again with the tolerances simulated together with it, and updates residuals
-    /// and alternatives. `gone` says that a member was refused, so that another candidate may
-    /// replace one that was chosen together with it.
-    fn settle(&mut self, inputs: &Inputs<'_>, gone: bool, known: Known) {
-        let far = |candidate: &Candidate, size: f64| {
-            deviations(candidate, size, inputs.settings, &self.declared, false)
-        };
-        // An effect between the threshold without `besides` and the one with it is fitted but not
-        // named, so that no other effect explains it.
-        let further = |candidate: &Candidate, size: f64| {
-            deviations(candidate, size, inputs.settings, &self.declared, true)
-        };
-        let families = families(&self.seen, &self.strata);
-        let places = std::mem::take(&mut self.allowed.places);
-        let (masks, alone, bars) = (&self.masks, &self.allowed.alone, &self.rates.bars);
-        let answered = self.ground.work(inputs, &self.seen, &self.declared, places, |tolerances| {
-            let workshop = tolerances.workshop;
-            let (candidates, refused, runs) =
-                (&mut self.candidates, &mut self.answer.refused, &mut self.runs);
-            let converging = Converging {
-                workshop,
-                place: alone,
-                tolerances: Some(tolerances),
-                families: &families,
-                far: &far,
-                false_name_rate: inputs.settings.false_name_rate,
-                seed: inputs.seed,
-            };
-            let again = Settled { tolerances, far: &further };
-            let first = |chosen: Chosen| Weighed { place: alone.clone(), chosen };
-            let mut chosen = self.answer.chosen.clone();
-            if gone && converging.again((candidates, masks), &mut chosen, bars, refused) {
-                alone_again(candidates, &chosen.members);
-            }
-            let before = refused.len();
-            let (mut beside, mut now) = again.answer(
-                (candidates, masks),
-                first(chosen),
-                &self.answer.lack_before,
-                bars,
-                refused,
-                runs,
-            );
-            let mut left = now.chosen.clone();
-            if refused.len() > before
-                && converging.again((candidates, masks), &mut left, bars, refused)
-            {
-                alone_again(candidates, &left.members);
-                (beside, now) = again.answer(
-                    (candidates, masks),
-                    first(left),
-                    &self.answer.lack_before,
-                    bars,
-                    refused,
-                    runs,
-                );
-            }
-            let Weighed { place: settled, mut chosen } = now;
-            let fitter = Fitter::of(&settled.whitener, candidates, masks.clone(), &chosen.members);
-            refit(&fitter, &settled.z, &mut chosen);
-            let lack_after = drop_what_harms(
-                &fitter,
-                (&beside, &self.seen),
-                &settled.z,
-                &mut chosen,
-                refused,
-                &self.answer.lack_before,
-            );
-            drop(fitter);
-            let first_of = |chosen: &Chosen| chosen.members.first().map(|member| member.candidate);
-            // The suspect depends on the first member, and in place of several members on all of
-            // them.
-            if !gone
-                || first_of(&chosen) != self.answer.suspected
-                || self.answer.suspect.as_ref().is_some_and(|suspect| suspect.of_all)
-            {
-                self.answer.suspected = first_of(&chosen);
-                self.answer.suspect =
-                    suspect(workshop, inputs.settings, alone, (candidates, masks, &chosen), runs);
-            }
-            let places = tolerances.looked_at().clone();
-            (beside, settled, chosen, lack_after, places)
-        });
-        (
-            self.allowed.beside,
-            self.allowed.settled,
-            self.answer.chosen,
-            self.answer.lack_after,
-            self.allowed.places,
-        ) = answered;
-        self.weigh(known, inputs.seed);
+    /// The covariance at the answer, plus the error of the responses of the simulated members,
+    /// independent between features.
+    #[must_use]
+    pub fn wider(&self) -> Covariance {
+        let mut wider = self.fitted.covariance.clone();
+        let candidates = &self.fitted.candidates;
+        let simulated =
+            self.answer.chosen.members.iter().filter(|member| !candidates[member.candidate].exact);
+        for member in simulated {
+            let change = member.change(candidates, &self.masks);
+            wider.diagonal.iter_mut().zip(change).for_each(|(variance, change)| {
+                *variance += (self.fitted.covariance.response.each * change).powi(2)
+            });
+        }
+        wider
     }
 
-    /// Evidence, rivals and stability of the answer. A member is weighed with the tolerances
-    /// simulated together with the members before it. A tolerance of the same parameter is then
-    /// free for rivals as well as for the member.
-    fn weigh(&mut self, known: Known, seed: u64) {
-        let sizes = Fitter::of(
-            &self.allowed.settled.whitener,
-            &self.candidates,
-            self.masks.clone(),
-            &self.answer.chosen.members,
-        );
-        let mut known = known;
-        let (mut found, mut stable, mut evidence) = (Vec::new(), Vec::new(), Vec::new());
-        let before = |at: usize| {
-            self.allowed
-                .places
-                .beside(&self.answer.chosen.members[..at])
-                .unwrap_or_else(|| self.allowed.alone.clone())
-        };
-        let places: Vec<Arc<Place>> = (0..self.answer.chosen.members.len())
-            .map(before)
-            .chain([self.allowed.beside.clone()])
-            .collect();
-        let mut last: Option<(&Arc<Place>, Fitter<'_>, Chosen)> = None;
-        for (at, place) in places.iter().enumerate() {
-            if last.as_ref().is_none_or(|(known, ..)| !Arc::ptr_eq(known, place)) {
-                let known = if Arc::ptr_eq(place, &self.allowed.alone) {
-                    std::mem::take(&mut known)
-                } else {
-                    Known::new()
-                };
-                let fitter =
-                    Fitter::knowing(&place.whitener, &self.candidates, self.masks.clone(), known);
-                let mut here = self.answer.chosen.clone();
-                refit(&fitter, &place.z, &mut here);
-                last = Some((place, fitter, here));
-            }
-            let Some((_, fitter, here)) = &last else { continue };
-            let Some(member) = here.members.get(at) else {
-                self.answer.nearest = nearest(fitter, here, &self.answer.refused);
-                self.answer.contradicting = contradicting(fitter, here, &self.answer.refused);
-                break;
-            };
-            found.extend(Sets::new(fitter, &place.z).rivals(here, at, &self.rates.bars));
-            stable.push(stability(
-                (fitter, &place.z, here),
-                (&sizes, &self.allowed.settled.z, &self.answer.chosen),
-                at,
-                &self.answer.refused,
-                &self.strata,
-                seed,
-            ));
-            evidence.push((member.fall, member.evidence));
-        }
-        found.sort_by(|a, b| a.2.total_cmp(&b.2));
-        (self.answer.rivals, self.answer.stability) = (found, stable);
-        for (member, evidence) in self.answer.chosen.members.iter_mut().zip(evidence) {
-            (member.fall, member.evidence) = evidence;
-        }
+    /// The candidate of a fit, at the answer.
+    #[must_use]
+    pub fn candidate(&self, fit: &Fitted) -> &Candidate {
+        &self.fitted.candidates[fit.candidate]
     }
 }
 
-/// Distance of a size from neutral in declared standard deviations. `besides` adds the tolerance's
-/// further standard deviation. Infinite for an effect that is not a tolerance.
+/// Distance of a size from neutral in declared standard deviations, with the tolerance's further
+/// standard deviation. Infinite for an effect that is not a tolerance.
 #[must_use]
 pub fn deviations(
     candidate: &Candidate,
     size: f64,
     settings: &Settings,
     declared: &Declared,
-    besides: bool,
 ) -> f64 {
     let tolerance = candidate
         .tolerance
@@ -455,7 +329,7 @@ pub fn deviations(
     let sd = declared.get(&tolerance.name).unwrap_or(tolerance.default);
     // For a tolerance declared by section, only the share common to all sections counts.
     let sd = if tolerance.shared > 0.0 { sd * tolerance.shared } else { sd };
-    let sd = if besides { sd.hypot(tolerance.besides) } else { sd };
+    let sd = sd.hypot(tolerance.besides);
     // A scaled parameter is declared by a relative standard deviation: the distance is that of the
     // logarithm.
     let scaled = tolerance.scales.contains(&candidate.size) && neutral != 0.0;
@@ -473,22 +347,15 @@ pub fn length(whitener: &Whitener, change: &[f64]) -> f64 {
 /// Chi-squared per feature before and after the effects.
 #[must_use]
 pub fn chi(found: &Found) -> (f64, f64) {
-    let beside = &found.allowed.beside;
-    let before = beside.whitener.apply(&found.allowed.alone.difference);
-    let after = beside.whitener.apply(&left(
-        &found.candidates,
-        &found.masks,
-        &beside.difference,
-        &found.answer.chosen,
-    ));
-    let n = before.len().max(1) as f64;
-    (chi_squared(&before) / n, chi_squared(&after) / n)
+    let of =
+        |rest: &[f64]| chi_squared(&found.fitted.whitener.apply(rest)) / rest.len().max(1) as f64;
+    (of(&found.alone.difference), of(&found.left()))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::response::candidate::Node;
+    use crate::diagnose::linearise::candidate::Node;
     use crate::diagnose::settings::Tolerance;
 
     /// 0.7 e^0.2 is 4 standard deviations from 0.7 for a relative standard deviation of 5 %, and so
@@ -509,7 +376,6 @@ mod tests {
                 per_section: false,
                 shared,
                 besides,
-                suspects: false,
             };
             let settings = Settings { tolerances: vec![tolerance], ..Settings::default() };
             let nodes = vec![
@@ -520,9 +386,7 @@ mod tests {
                 tolerance: Some("declared".into()),
                 ..Candidate::path("effect", nodes)
             };
-            move |size: f64| {
-                deviations(&candidate, size, &settings, &Declared::default(), besides > 0.0)
-            }
+            move |size: f64| deviations(&candidate, size, &settings, &Declared::default())
         };
         let near = |found: f64, wanted: f64| {
             assert!((found - wanted).abs() < 1e-9, "{found} for {wanted}")

@@ -4,8 +4,8 @@ use indexmap::IndexMap;
 use serde_json::Value;
 
 use super::campaign::Really;
-use crate::diagnose::features::observed::Observed;
 use crate::diagnose::levels::score::DETECTABLE;
+use crate::diagnose::observe::observed::Observed;
 use crate::effects::{Action, Applied, CHANNEL, Catalogue, Confined};
 use crate::metrics::interval::wilson;
 use crate::result::blind::{Blind, BySize, Calibration, Case, Places, Score};

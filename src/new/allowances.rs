@@ -2,7 +2,7 @@
 
 use super::records::{Pair, Roles};
 use super::windows::{Cut, piece, two_digits};
-use crate::diagnose::features::layout::{Spectrum, level};
+use crate::diagnose::observe::layout::{Spectrum, level};
 
 /// Bounds of the standard deviations: a level as a share of the rms value of its channel, a band as
 /// a logarithm, a gain, and a lag in samples. Below, an allowance would claim more than a record of

@@ -2,7 +2,7 @@
 
 use super::records::{Channel, Pair, Roles};
 use super::windows::{Cut, piece};
-use crate::diagnose::features::layout::Spectrum;
+use crate::diagnose::observe::layout::Spectrum;
 use crate::init::protocol::identifier;
 use crate::units::{Dimension, Unit};
 

@@ -1,7 +1,7 @@
 //! Sections and bands, from the spectrum of the measurement.
 
 use super::records::{Pair, Roles, Series};
-use crate::diagnose::features::layout::{Piece, Spectrum};
+use crate::diagnose::observe::layout::{Piece, Spectrum};
 use crate::units::number::significant;
 
 /// Shares of the power of the measured channels below the lowest and the highest frequency that

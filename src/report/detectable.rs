@@ -31,6 +31,9 @@ fn drawn(found: &Diagnosis) -> Table {
     Table::new(caption, columns, rows.map(row))
 }
 
+/// Number of tolerances that are told.
+const TOLERANCES: usize = 5;
+
 /// Digits of a size.
 const SIZE: Format = Format::Significant(3);
 
@@ -69,6 +72,22 @@ pub fn detectable(found: &Diagnosis) -> Vec<Block> {
     );
     let sizes = Table::new(caption, columns, found.detectable.iter().map(row));
     let mut blocks = vec![drawn(found).into(), sizes.into()];
+    let used: Vec<String> = found
+        .tolerances
+        .iter()
+        .take(TOLERANCES)
+        .map(|one| {
+            let deviations = number::fixed(one.deviations, 1);
+            format!("{} ({}): {deviations}", one.tolerance, one.parameter)
+        })
+        .collect();
+    if !used.is_empty() {
+        let says = format!(
+            "Tolerances that the fit used most, in declared standard deviations: {}.",
+            used.join("; ")
+        );
+        blocks.push(Block::text(says));
+    }
     if !found.nearest.is_empty() {
         let rows = found
             .nearest

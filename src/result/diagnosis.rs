@@ -53,6 +53,8 @@ pub struct Diagnosis {
     pub detectable: Vec<Detectable>,
     /// Closest candidates for the residual that are not named.
     pub nearest: Vec<Nearest>,
+    /// Deviations of the tolerances that the fit used, the largest first.
+    pub tolerances: Vec<UsedTolerance>,
     pub how: How,
     #[serde(flatten, with = "told::notes")]
     #[schemars(with = "told::Notes<Remark>")]
@@ -66,6 +68,15 @@ pub struct Diagnosis {
     /// Signals of the sections with the largest gap, for figures.
     #[serde(skip)]
     pub pictures: Vec<Picture>,
+}
+
+/// The deviation of a tolerance that the fit used: the mean of its posterior.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+pub struct UsedTolerance {
+    pub tolerance: String,
+    pub parameter: String,
+    /// In declared standard deviations.
+    pub deviations: f64,
 }
 
 /// What the search names in campaigns drawn on the basis of this one, with known effects. The

@@ -1,12 +1,12 @@
 //! Selection of the sections that, if measured again, would best discriminate two causes: T-optimal
 //! design (Atkinson and Fedorov 1975) among further sections like those of each stratum.
 
-use crate::diagnose::inference::fit::Fitted;
-use crate::diagnose::response::candidate::Candidate;
-use crate::diagnose::response::mask::Mask;
+use crate::diagnose::checks::channels::{View, part};
+use crate::diagnose::fit::fitter::{Fitted, Fitter};
+use crate::diagnose::linearise::candidate::Candidate;
+use crate::diagnose::linearise::mask::Mask;
+use crate::diagnose::linearise::whiten::{Covariance, dot};
 use crate::diagnose::run::Found;
-use crate::diagnose::selection::guards::{View, in_view};
-use crate::diagnose::uncertainty::whiten::{Covariance, dot};
 
 /// Distance of two causes, in standard deviations of the allowed difference.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,9 +20,9 @@ pub struct Apart {
 /// The distance between a member of the answer and its rival.
 #[must_use]
 pub fn apart(found: &Found, member: &Fitted, rival: &Fitted) -> Option<Apart> {
-    let change = member.change(&found.candidates, &found.masks);
-    let of = (&found.candidates[rival.candidate], &found.masks[rival.mask]);
-    best(&found.allowed.alone.covariance, &found.seen.first_runs(), &found.strata, &change, of)
+    let change = member.change(&found.fitted.candidates, &found.masks);
+    let of = (&found.fitted.candidates[rival.candidate], &found.masks[rival.mask]);
+    best(&found.alone.covariance, &found.seen.first_runs(), &found.strata, &change, of)
 }
 
 fn best(
@@ -30,13 +30,21 @@ fn best(
     all: &[usize],
     strata: &[Vec<usize>],
     change: &[f64],
-    rival: (&Candidate, &Mask),
+    (candidate, mask): (&Candidate, &Mask),
 ) -> Option<Apart> {
     let distance = |more: &[usize]| {
-        let sections = [all, more].concat();
-        let view = View { says: String::new(), sections, features: (0..covariance.size).collect() };
-        let seen = in_view(covariance, &view, rival, change)?;
-        Some((dot(&seen.z, &seen.z) - seen.fitted.fall).max(0.0).sqrt())
+        let view =
+            View { sections: [all, more].concat(), features: (0..covariance.size).collect() };
+        let whitener = covariance.part(&view.sections, &view.features).whitener();
+        let mut seen = candidate.clone();
+        for node in seen.nodes.iter_mut().filter(|node| !node.change.is_empty()) {
+            node.change = part(&mask.on(&node.change), covariance.size, &view);
+        }
+        let z = whitener.apply(&part(change, covariance.size, &view));
+        let everywhere = Mask::everywhere(view.sections.len());
+        let fitter = Fitter::new(&whitener, std::slice::from_ref(&seen), vec![everywhere]);
+        let fitted = fitter.fit(&z, 0, 0)?;
+        Some((dot(&z, &z) - fitted.fall).max(0.0).sqrt())
     };
     let now = distance(&[])?;
     let more = strata.iter().filter_map(|sections| Some((distance(sections)?, sections)));
@@ -47,8 +55,8 @@ fn best(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::response::candidate::Node;
-    use crate::diagnose::uncertainty::response::ResponseError;
+    use crate::diagnose::linearise::candidate::Node;
+    use crate::diagnose::linearise::response::ResponseError;
 
     /// Two features in each of four sections, unit noise. The effect changes both features equally.
     /// The rival does so in the first two sections and changes them in opposite directions in the
@@ -68,7 +76,7 @@ mod tests {
             Node { size: 10.0, change: vec![20.0, 20.0, 20.0, 20.0, 20.0, -20.0, 20.0, -20.0] },
         ];
         let rival = Candidate::path("rival", nodes);
-        let everywhere = Mask { confined: None, sections: vec![true; 4], asked_by: None };
+        let everywhere = Mask::everywhere(4);
         let found = best(
             &covariance,
             &[0, 1, 2, 3],

@@ -3,12 +3,13 @@
 use indexmap::IndexMap;
 use serde_json::json;
 
-use crate::diagnose::inference::fit::Fitted;
+use crate::diagnose::checks::stability::Stability;
+use crate::diagnose::fit::fitter::Fitted;
+use crate::diagnose::fit::set::plausible;
 use crate::diagnose::inputs::Inputs;
 use crate::diagnose::levels::common::NINETY;
-use crate::diagnose::run::{Found, deviations};
-use crate::diagnose::selection::stability::Stability;
-use crate::diagnose::settings::Settings;
+use crate::diagnose::linearise::candidate::Candidate;
+use crate::diagnose::run::Found;
 use crate::effects::Action;
 use crate::result::diagnosis::{Cause, NamedEffect, Value};
 use crate::yaml::Words;
@@ -59,11 +60,11 @@ pub fn short(value: f64) -> String {
 /// an effect without a size.
 #[must_use]
 pub fn interval(found: &Found, member: &Fitted) -> Option<(f64, f64)> {
-    let of = &found.candidates[member.candidate];
+    let of = &found.fitted.candidates[member.candidate];
     let (low, high) =
         around(found, member, stability_of(found, member).map(|stability| stability.sizes))?;
     let common = NINETY
-        * member.common_error(&found.candidates, found.allowed.beside.covariance.response.common);
+        * member.common_error(&found.fitted.candidates, found.fitted.covariance.response.common);
     let (below, above) = ((member.size - low).hypot(common), (high - member.size).hypot(common));
     Some(((member.size - below).max(of.range.0), (member.size + above).min(of.range.1)))
 }
@@ -71,8 +72,11 @@ pub fn interval(found: &Found, member: &Fitted) -> Option<(f64, f64)> {
 /// Combines the standard error of the fit with the spread of the resampled sizes around the fitted
 /// one.
 fn around(found: &Found, member: &Fitted, drawn: Option<(f64, f64)>) -> Option<(f64, f64)> {
-    let of = &found.candidates[member.candidate];
+    let of = &found.fitted.candidates[member.candidate];
     if of.discrete || !member.size.is_finite() {
+        return None;
+    }
+    if !plausible(of, member.size) {
         return None;
     }
     let error = NINETY * member.error();
@@ -84,49 +88,39 @@ fn around(found: &Found, member: &Fitted, drawn: Option<(f64, f64)>) -> Option<(
     Some(((member.size - below).max(of.range.0), (member.size + above).min(of.range.1)))
 }
 
-/// The member with the least evidence among those whose interval includes the neutral value, or a
-/// value within the declared tolerance; with the reason why it is not named. Other sections might
-/// then have given the opposite sign, another effect, or no more than the declared deviation.
-#[must_use]
-pub fn nothing_out_of_the_ordinary(found: &Found, settings: &Settings) -> Option<(usize, String)> {
-    let holds = |(at, member): (usize, &Fitted)| {
-        let of = &found.candidates[member.candidate];
-        let (low, high) =
-            around(found, member, stability_of(found, member).map(|stability| stability.judged()))?;
-        let nothing = of.neutral()?;
-        let nearest = nothing.clamp(low, high);
-        let holds = match deviations(of, nearest, settings, &found.declared, true) {
-            _ if nearest == nothing => {
-                format!("{}, at which the effect has no influence", short(nothing))
-            }
-            away if away < NINETY => {
-                format!("{}, which is {away:.1} declared standard deviations away", short(nearest))
-            }
-            _ => return None,
-        };
-        Some((
-            at,
-            format!(
-                "the interval of its size, {} to {}, includes {holds}",
-                short(low),
-                short(high)
-            ),
-            member.evidence,
-        ))
+/// The 90 % interval of a parameter that is tried at a few values: the values at which the answer
+/// loses no more than a likelihood ratio of 90 % allows, to the middle between these and the next
+/// ones. Nothing for a candidate that is no member of the answer.
+fn of_trials(found: &Found, member: &Fitted, name: &str, value: f64) -> Option<(f64, f64)> {
+    let own = found.candidate(member);
+    let members = &found.answer.chosen.members;
+    let at = members.iter().position(|one| one.candidate == member.candidate)?;
+    let of = |candidate: &Candidate| {
+        let fixed = candidate.fixed.iter().find(|(known, _)| known == name)?;
+        (candidate.is_like(own) && candidate.size == own.size).then_some(fixed.1)
     };
-    let found = found
-        .answer
-        .chosen
-        .members
-        .iter()
-        .enumerate()
-        .filter_map(holds)
-        .min_by(|a, b| a.2.total_cmp(&b.2));
-    found.map(|(at, says, _)| (at, says))
+    let mut trials: Vec<f64> = found.fitted.candidates.iter().filter_map(of).collect();
+    trials.sort_by(f64::total_cmp);
+    trials.dedup();
+    let is_possible = |trial: &f64| {
+        let mut rivals = found.answer.rivals.iter();
+        *trial == value
+            || rivals.any(|(of_member, fit, loss)| {
+                *of_member == at
+                    && *loss <= NINETY * NINETY
+                    && of(found.candidate(fit)) == Some(*trial)
+            })
+    };
+    let first = trials.iter().position(is_possible)?;
+    let last = trials.iter().rposition(is_possible)?;
+    let middle = |a: usize, b: usize| 0.5 * (trials[a] + trials[b]);
+    let low = if first == 0 { trials[0] } else { middle(first - 1, first) };
+    let high = if last + 1 == trials.len() { trials[last] } else { middle(last, last + 1) };
+    Some((low, high))
 }
 
 fn named(inputs: &Inputs<'_>, found: &Found, member: &Fitted) -> NamedEffect {
-    let of = &found.candidates[member.candidate];
+    let of = &found.fitted.candidates[member.candidate];
     let effect = inputs.catalogue.effect(&of.effect);
     let mut parameters = IndexMap::new();
     let unit = |name: &str| {
@@ -172,9 +166,11 @@ fn named(inputs: &Inputs<'_>, found: &Found, member: &Fitted) -> NamedEffect {
         }
     }
     for (name, value) in &of.fixed {
+        let interval = of_trials(found, member, name, *value);
+        let (low, high) = (interval.map(|of| of.0), interval.map(|of| of.1));
         parameters.insert(
             name.clone(),
-            Value { value: json!(value), unit: unit(name), assumed: None, low: None, high: None },
+            Value { value: json!(value), unit: unit(name), assumed: None, low, high },
         );
     }
     NamedEffect {

@@ -9,6 +9,7 @@ use crate::result::diagnosis::Detectable;
 pub fn detectable(found: &Found) -> Vec<Detectable> {
     let mut list: Vec<Detectable> = Vec::new();
     for candidate in found
+        .alone
         .candidates
         .iter()
         .filter(|candidate| !candidate.discrete && candidate.fixed.is_empty())
@@ -20,7 +21,7 @@ pub fn detectable(found: &Found) -> Vec<Detectable> {
             .nodes
             .iter()
             .filter(|node| !node.change.is_empty())
-            .map(|node| (node.size - neutral, length(&found.allowed.alone.whitener, &node.change)))
+            .map(|node| (node.size - neutral, length(&found.alone.whitener, &node.change)))
             .collect();
         nodes.sort_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
         let below = nodes.iter().copied().filter(|(away, _)| *away < 0.0);

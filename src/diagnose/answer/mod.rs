@@ -2,10 +2,9 @@
 
 pub(super) mod apart;
 pub mod causes;
+pub mod decrease;
 pub(super) mod detectable;
 pub(super) mod pictures;
 pub(super) mod rivals;
-pub mod shrink;
-pub mod steady;
 pub mod verdict;
 pub(super) mod words;

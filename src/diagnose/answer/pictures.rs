@@ -1,7 +1,7 @@
 //! Figures of the sections with the largest gap: measured, simulated, simulated with the effects.
 
-use crate::diagnose::features::layout::Kind;
 use crate::diagnose::levels::pictures::{PANELS, SECTIONS, SMOOTH};
+use crate::diagnose::observe::layout::Kind;
 use crate::diagnose::run::Found;
 use crate::diagnose::settings::Settings;
 use crate::effects::Signals;
@@ -30,17 +30,16 @@ pub fn pictures(
             .map(|(at, _)| {
                 let place = seen.place(section, at);
                 let shared: f64 =
-                    found.allowed.tolerated.shared.iter().map(|column| column[place].powi(2)).sum();
+                    found.tolerated.shared.iter().map(|column| column[place].powi(2)).sum();
                 let inside: f64 = found
-                    .allowed
                     .tolerated
                     .inside
                     .iter()
                     .filter(|(of, _)| *of == section)
                     .map(|(_, column)| column[at].powi(2))
                     .sum();
-                found.allowed.alone.difference[place].powi(2)
-                    / (found.allowed.tolerated.diagonal[place] + shared + inside)
+                found.alone.difference[place].powi(2)
+                    / (found.tolerated.diagonal[place] + shared + inside)
             })
             .sum::<f64>()
     };

@@ -4,14 +4,14 @@
 use super::apart::{Apart, apart};
 use super::causes::cause;
 use super::verdict::Verdict;
-use crate::diagnose::inference::chosen::plausible;
-use crate::diagnose::inference::fit::Fitted;
+use crate::diagnose::fit::fitter::Fitted;
+use crate::diagnose::fit::set::plausible;
 use crate::diagnose::inputs::Inputs;
-use crate::diagnose::levels::chosen::TOLERANCE_SD;
 use crate::diagnose::levels::rivals::{
     NEAREST, NEAREST_SHARE, OUTSIDE, OUTSIDE_SUSPECTED, OUTSIDE_UNEXPLAINED, TEMPERATURE,
     TOLD_APART,
 };
+use crate::diagnose::levels::search::TOLERANCE_SD;
 use crate::diagnose::run::{Found, deviations};
 use crate::effects::Effect;
 use crate::result::diagnosis::Cause;
@@ -21,9 +21,9 @@ use crate::result::diagnosis::Cause;
 pub fn ambiguity(inputs: &Inputs<'_>, found: &Found) -> Vec<Cause> {
     let best = found.answer.chosen.evidence;
     let mut causes: Vec<Cause> = Vec::new();
-    let own = |at: usize| &found.candidates[found.answer.chosen.members[at].candidate];
+    let own = |at: usize| &found.fitted.candidates[found.answer.chosen.members[at].candidate];
     for (at, fit, fall) in &found.answer.rivals {
-        let of = &found.candidates[fit.candidate];
+        let of = &found.fitted.candidates[fit.candidate];
         // The same effect on another channel is another cause if the data do not show which channel
         // it is.
         let elsewhere = of.effect == own(*at).effect
@@ -35,7 +35,7 @@ pub fn ambiguity(inputs: &Inputs<'_>, found: &Found) -> Vec<Cause> {
             .chosen
             .members
             .iter()
-            .any(|member| found.candidates[member.candidate].effect == of.effect);
+            .any(|member| found.fitted.candidates[member.candidate].effect == of.effect);
         if named && !elsewhere {
             continue;
         }
@@ -51,13 +51,13 @@ pub fn ambiguity(inputs: &Inputs<'_>, found: &Found) -> Vec<Cause> {
             .answer
             .refused
             .iter()
-            .any(|refused| found.candidates[refused.fitted.candidate].is_like(of))
+            .any(|refused| found.fitted.candidates[refused.fitted.candidate].is_like(of))
             || !plausible(of, fit.size)
         {
             continue;
         }
         // A size within a declared tolerance is part of the covariance already.
-        if deviations(of, fit.size, inputs.settings, &found.declared, true) < TOLERANCE_SD {
+        if deviations(of, fit.size, inputs.settings, &found.declared) < TOLERANCE_SD {
             continue;
         }
         let near = *fall
@@ -138,7 +138,7 @@ pub fn discriminating(
         }
     }
     measurements.extend(
-        found.answer.suspect.as_ref().map(|suspect| format!("a measurement of `{}`", suspect.key)),
+        found.answer.further.suspect().map(|free| format!("a measurement of `{}`", free.parameter)),
     );
     measurements.extend(more_sections(inputs, found, causes));
     (!measurements.is_empty()).then(|| measurements.join("; or "))
@@ -170,7 +170,7 @@ fn nearest<'a>(found: &'a Found, causes: &[Cause]) -> Option<([&'a str; 2], Apar
             cause.in_ambiguity_set && cause.effects.iter().any(|effect| effect.name == name)
         })
     };
-    let effect = |fit: &Fitted| found.candidates[fit.candidate].effect.as_str();
+    let effect = |fit: &Fitted| found.fitted.candidates[fit.candidate].effect.as_str();
     let differs = |at: usize, fit: &Fitted| {
         near(effect(fit)) && effect(fit) != effect(&found.answer.chosen.members[at])
     };

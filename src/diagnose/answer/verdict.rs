@@ -4,7 +4,6 @@
 use crate::diagnose::levels::common::NINETY;
 use crate::diagnose::levels::verdict::{MISFIT, ROOMY};
 use crate::diagnose::run::Found;
-use crate::diagnose::selection::lack::{left, with_room};
 use crate::result::diagnosis::{Fit, Shrink};
 use crate::result::{Remark, Verdict as OfProtocol};
 
@@ -43,6 +42,8 @@ pub struct Facts {
     /// Whether most of the excess remains, a parameter outside the catalogue explains more, or an
     /// effect that the data contradict does.
     pub much_left: bool,
+    /// Whether names and sizes did not stand still.
+    pub moving: bool,
     /// Whether alternatives are as good, or another effect is better in many resamples.
     pub tied: bool,
     /// Whether the criteria of the protocol are not met without effects.
@@ -68,7 +69,7 @@ const fn rule(applies: fn(&Facts) -> bool, verdict: Verdict, reason: Option<&'st
 }
 
 /// In this order.
-const RULES: [Rule; 10] = [
+const RULES: [Rule; 11] = [
     rule(|of| !of.named && (of.faulty || of.lacking || of.systematic), Verdict::Unexplained, None),
     rule(
         |of| !of.named && of.protocol_fails,
@@ -98,6 +99,13 @@ const RULES: [Rule; 10] = [
         Verdict::Unexplained,
         Some(
             "The named effects improve the fit, but do not decrease the gap on the sections that the campaign holds out.",
+        ),
+    ),
+    rule(
+        |of| of.moving,
+        Verdict::Ambiguous,
+        Some(
+            "Names and sizes do not stand still when responses and tolerances are simulated at the fitted sizes.",
         ),
     ),
     rule(|of| of.tied, Verdict::Ambiguous, None),
@@ -138,19 +146,7 @@ pub fn removed(shrink: Option<&Shrink>) -> Option<f64> {
 #[must_use]
 pub fn fit(found: &Found) -> Fit {
     use statrs::distribution::{ChiSquared, ContinuousCDF};
-    let covariance = with_room(
-        &found.allowed.beside.covariance,
-        &found.candidates,
-        &found.masks,
-        &found.answer.chosen,
-    );
-    let rest = left(
-        &found.candidates,
-        &found.masks,
-        &found.allowed.beside.difference,
-        &found.answer.chosen,
-    );
-    let z = covariance.whitener().apply(&rest);
+    let z = found.wider().whitener().apply(&found.left());
     let features = z.len().max(1) as f64;
     let chi_squared: f64 = z.iter().map(|z| z * z).sum();
     let freedom = (features - found.answer.chosen.members.len() as f64).max(1.0);

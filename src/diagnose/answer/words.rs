@@ -1,19 +1,26 @@
 //! Text and numbers of the answer.
 
-use super::causes::cause;
+use super::causes::{cause, short};
 use super::detectable::detectable;
 use super::rivals::{ambiguity, discriminating, neither, probabilities};
 use super::verdict::{self, Facts, Verdict};
-use crate::diagnose::features::layout::Kind;
-use crate::diagnose::inference::fit::Fitted;
+use crate::diagnose::checks::channels::unexplained;
+use crate::diagnose::checks::further::Free;
+use crate::diagnose::checks::heterogeneity::{Heterogeneity, certain};
+use crate::diagnose::fit::fitter::Fitted;
+use crate::diagnose::fit::set::{Refused, plausible};
 use crate::diagnose::inputs::Inputs;
-use crate::diagnose::levels::chosen::TOLERANCE_SD;
-use crate::diagnose::levels::lack::LACK;
-use crate::diagnose::levels::words::TOLD;
+use crate::diagnose::levels::channels::LACK;
+use crate::diagnose::levels::common::NINETY;
+use crate::diagnose::levels::further::{LEFT, TOLERANCE};
+use crate::diagnose::levels::search::{MOST, TOLERANCE_SD};
+use crate::diagnose::levels::words::{TELLING, TOLD, TOLD_NEAREST};
+use crate::diagnose::observe::layout::Kind;
 use crate::diagnose::run::{Found, chi, deviations};
-use crate::diagnose::selection::lack::unexplained;
-use crate::diagnose::selection::suspects::Suspect;
-use crate::result::diagnosis::{Cause, Diagnosis, Fault, HeldOut, How, Nearest, Shrink, Vetoed};
+use crate::effects::CHANNEL;
+use crate::result::diagnosis::{
+    Cause, Diagnosis, Drift, Fault, HeldOut, How, Nearest, Shrink, Vetoed,
+};
 use crate::result::{FORMAT, OutlyingSection, Remark, THIS, Verdict as OfProtocol};
 use crate::simulate::Units;
 
@@ -52,14 +59,15 @@ pub fn diagnosis(
     let ambiguous = ambiguity(inputs, found);
     let named = !found.answer.chosen.members.is_empty();
     let invariants =
-        crate::diagnose::localisation::invariants::invariants(inputs.settings, found, units);
+        crate::diagnose::describe::invariants::invariants(inputs.settings, found, units);
     let (mut trends, together) =
-        crate::diagnose::localisation::trends::trends(inputs.settings, found, units);
-    let drifts = super::steady::drifts(inputs.settings, found);
-    // A trend that is certain, however small its share of the gap.
-    let left = crate::diagnose::localisation::trends::certain(&trends)
-        || super::steady::certain(&drifts).is_some()
-        || crate::diagnose::localisation::invariants::stays(&invariants).is_some();
+        crate::diagnose::describe::trends::trends(inputs.settings, found, units);
+    let further = &found.answer.further;
+    let heterogeneous = certain(&found.answer.heterogeneity);
+    let left = heterogeneous.is_some()
+        || further.evidence > if named { LEFT } else { found.rates.bars.first }
+        || !named && further.tolerance.as_ref().is_some_and(|free| free.evidence > TOLERANCE)
+        || !named && crate::diagnose::describe::trends::certain(&trends);
     // The smallest share of resamples in which a member has the most evidence, where that share is
     // too small.
     let least = found
@@ -75,10 +83,9 @@ pub fn diagnosis(
         faulty: !found.seen.faults.is_empty(),
         lacking,
         systematic: left,
-        much_left: too_much
-            || found.answer.suspect.as_ref().is_some_and(Suspect::beats)
-            || found.answer.contradicting.is_some(),
-        tied: found.answer.suspect.is_some()
+        much_left: too_much || further.refutes(),
+        moving: !found.answer.still,
+        tied: further.suspect().is_some()
             || least.is_some()
             || ambiguous.iter().any(|rival| rival.in_ambiguity_set),
         protocol_fails: verdict::fails(protocol.0),
@@ -103,10 +110,10 @@ pub fn diagnosis(
         );
         causes.iter_mut().enumerate().for_each(|(at, cause)| cause.rank = at + 1);
     }
-    probabilities(&mut causes, verdict, found.answer.suspect.is_some(), least);
+    probabilities(&mut causes, verdict, further.suspect().is_some(), least);
     let discriminating_measurement = discriminating(inputs, found, &causes, verdict);
     let radius = |key: &str| crate::diagnose::inputs::value_of(inputs.campaign, key);
-    let shapes = crate::diagnose::localisation::shapes::shapes(
+    let shapes = crate::diagnose::describe::shapes::shapes(
         inputs.settings,
         &found.seen,
         &radius,
@@ -118,10 +125,10 @@ pub fn diagnosis(
     let trends_tested = trends.len();
     trends.retain(|trend| trend.before.p_value.min(trend.after.p_value) < TOLD);
     if verdict == Verdict::Unexplained {
-        says.extend(super::steady::worth_a_word(inputs.catalogue, &drifts));
-        says.extend(crate::diagnose::localisation::trends::worth_a_word(&trends));
-        says.extend(crate::diagnose::localisation::invariants::worst(&invariants));
-        says.extend(crate::diagnose::localisation::shapes::worth_a_word(&shapes));
+        says.extend(heterogeneous.map(|test| heterogeneous_in_words(inputs, found, test)));
+        says.extend(crate::diagnose::describe::trends::worth_a_word(&trends));
+        says.extend(crate::diagnose::describe::invariants::worst(&invariants));
+        says.extend(crate::diagnose::describe::shapes::worth_a_word(&shapes));
     }
     says.extend(neither(inputs, found, &causes, verdict));
     let noted =
@@ -167,12 +174,12 @@ pub fn diagnosis(
         protocol_before: protocol.0,
         protocol_after: protocol.1,
         faults: found.seen.faults.clone(),
-        r#where: crate::diagnose::localisation::locate::locate(inputs.settings, found, units),
+        r#where: crate::diagnose::describe::locate::locate(inputs.settings, found, units),
         invariants,
         trends,
         trends_tested,
         together,
-        drifts,
+        drifts: found.answer.heterogeneity.iter().map(|test| drift(found, test)).collect(),
         shapes,
         causes,
         vetoed: vetoed(inputs, found),
@@ -182,6 +189,7 @@ pub fn diagnosis(
         discriminating_measurement,
         detectable: detectable(found),
         nearest: nearest(inputs, found),
+        tolerances: found.answer.used.clone(),
         how: How {
             catalogue: inputs.catalogue.name.clone(),
             simulator: inputs
@@ -229,8 +237,8 @@ fn alone(found: &Found) -> Option<Remark> {
 }
 
 fn vetoed(inputs: &Inputs<'_>, found: &Found) -> Vec<Vetoed> {
-    let one = |refused: &crate::diagnose::inference::chosen::Refused| {
-        let of = &found.candidates[refused.fitted.candidate];
+    let one = |refused: &Refused| {
+        let of = found.candidate(&refused.fitted);
         let title = inputs
             .catalogue
             .effect(&of.effect)
@@ -254,16 +262,9 @@ fn vetoed(inputs: &Inputs<'_>, found: &Found) -> Vec<Vetoed> {
 /// The closest candidates that are not named, and the criterion that each does not meet.
 fn nearest(inputs: &Inputs<'_>, found: &Found) -> Vec<Nearest> {
     let one = |fit: &Fitted| {
-        let of = &found.candidates[fit.candidate];
-        let bar = found.rates.bars.least(of);
-        let needed = if found.masks[fit.mask].asked_by.is_some() { 2.0 * bar } else { bar };
-        let away = deviations(
-            &found.candidates[fit.candidate],
-            fit.size,
-            inputs.settings,
-            &found.declared,
-            true,
-        );
+        let of = &found.fitted.candidates[fit.candidate];
+        let needed = found.rates.bars.least(of);
+        let away = deviations(of, fit.size, inputs.settings, &found.declared);
         let wants = match () {
             () if fit.evidence < needed => format!("evidence of at least {needed:.1}"),
             () if away < TOLERANCE_SD => {
@@ -271,11 +272,11 @@ fn nearest(inputs: &Inputs<'_>, found: &Found) -> Vec<Nearest> {
                     "larger deviation from the declared value: {away:.1} of {TOLERANCE_SD:.1} standard deviations"
                 )
             }
-            // Candidates are tested one at a time, by evidence.
-            () if found.answer.chosen.members.is_empty() => {
-                "more evidence than the effect that was rejected in its place".into()
+            () if !plausible(of, fit.size) => "a value inside the range of the catalogue".into(),
+            () if found.answer.chosen.members.len() == MOST => {
+                format!("an answer with fewer effects: at most {MOST} are named")
             }
-            () => "a larger share of the named effects".into(),
+            () => "more evidence of all effects together".into(),
         };
         Nearest {
             effect: of.effect.clone(),
@@ -284,7 +285,74 @@ fn nearest(inputs: &Inputs<'_>, found: &Found) -> Vec<Nearest> {
             wants,
         }
     };
-    found.answer.nearest.iter().map(one).collect()
+    let worth = found.answer.nearest.iter().filter(|fit| fit.evidence >= TELLING);
+    let mut told: Vec<Nearest> = Vec::new();
+    for near in worth.map(one) {
+        if told.iter().all(|known| known.effect != near.effect) {
+            told.push(near);
+        }
+    }
+    told.truncate(TOLD_NEAREST);
+    told
+}
+
+/// A tolerance that explains more than a member does.
+fn in_place_of(free: &Free) -> String {
+    format!(
+        "`{}` ({}) at {:.1} declared standard deviations explains more than a named effect (evidence larger by {:.0})",
+        free.parameter, free.tolerance, free.deviations, free.evidence
+    )
+}
+
+/// The parts of a view between which the size of a member differs most: the difference and its
+/// standard error, in units of the size.
+fn drift(found: &Found, test: &Heterogeneity) -> Drift {
+    let member = &found.answer.chosen.members[test.member];
+    let of = found.candidate(member);
+    let scale = of
+        .neutral()
+        .filter(|neutral| neutral.is_finite())
+        .map_or(1.0, |neutral| member.size - neutral);
+    let by_size =
+        |a: &&(String, f64, f64), b: &&(String, f64, f64)| (scale * a.1).total_cmp(&(scale * b.1));
+    let low = test.parts.iter().min_by(by_size);
+    let high = test.parts.iter().max_by(by_size);
+    let part = |of: Option<&(String, f64, f64)>| {
+        of.map_or_else(|| (String::new(), 0.0, 0.0), Clone::clone)
+    };
+    let ((from, least, one), (to, most, other)) = (part(low), part(high));
+    let (change, error) = (scale * (most - least), scale.abs() * one.hypot(other));
+    Drift {
+        effect: of.effect.clone(),
+        signals: of.channels.clone(),
+        parameter: of.size.replace(&format!(".{CHANNEL}"), ""),
+        unit: of.unit.to_string(),
+        covariate: test.view.clone(),
+        from,
+        to,
+        change,
+        low: change - NINETY * error,
+        high: change + NINETY * error,
+        p_value: test.p_value,
+    }
+}
+
+fn heterogeneous_in_words(inputs: &Inputs<'_>, found: &Found, test: &Heterogeneity) -> String {
+    let Drift { effect, signals, parameter, unit, covariate, from, to, change, low, high, .. } =
+        drift(found, test);
+    let title = inputs.catalogue.effect(&effect).map_or(effect.as_str(), |effect| &effect.title);
+    let on = if signals.len() > 2 || signals.is_empty() {
+        String::new()
+    } else {
+        format!(" ({})", signals.join(", "))
+    };
+    let unit = if unit == "-" { String::new() } else { format!(" {unit}") };
+    format!(
+        "{title}{on}: no single size fits all data. By {covariate}, {parameter} differs by {}{unit} ({} to {}) between {from} and {to}.",
+        short(change),
+        short(low),
+        short(high)
+    )
 }
 
 fn says(
@@ -306,16 +374,14 @@ fn says(
         Verdict::Explained => lines.push(format!("{}.", causes[0].says)),
         Verdict::Ambiguous => {
             let mut set: Vec<String> = causes.iter().filter(|cause| cause.in_ambiguity_set).map(|cause| cause.says.clone()).collect();
-            set.extend(found.answer.suspect.as_ref().map(|suspect| {
-                format!("`{}` multiplied by {:.2}, a parameter that no effect of the catalogue changes", suspect.key, suspect.factor)
-            }));
+            set.extend(found.answer.further.suspect().map(in_place_of));
             lines.push(match &set[..] {
                 [alone] => format!("{alone}; the data do not distinguish it from all alternatives."),
                 all => format!("The data do not distinguish between these causes: {}.", all.join(" | ")),
             });
             let failing = found.answer.chosen.members.iter().zip(&found.answer.stability).filter(|(_, stability)| stability.fails());
             lines.extend(failing.map(|(member, stability)| {
-                let effect = &found.candidates[member.candidate].effect;
+                let effect = &found.fitted.candidates[member.candidate].effect;
                 let title = inputs.catalogue.effect(effect).map_or(effect, |effect| &effect.title);
                 let beaten = 100.0 * (1.0 - stability.first);
                 format!("{title}: when the sections are resampled, another effect has more evidence in {beaten:.0} % of the resamples.")
@@ -330,25 +396,28 @@ fn says(
                 .map(|lack| format!("{} ({})", lack.channel, if lack.kind == Kind::Level { "quasi-static" } else { "dynamic" }))
                 .collect();
             let catalogue = &inputs.catalogue.name;
-            if let Some(suspect) = &found.answer.suspect {
-                lines.push(format!(
-                    "Outside the catalogue: `{}` multiplied by {:.2} explains more than {} (evidence {:.0} against {:.0}).",
-                    suspect.key,
-                    suspect.factor,
-                    if suspect.of_all { "all effects together" } else { "any single effect" },
-                    suspect.evidence,
-                    suspect.answer
-                ));
-            }
-            if let Some((refused, evidence)) = &found.answer.contradicting {
-                let looks = cause(inputs, found, std::slice::from_ref(&refused.fitted), 0).says;
-                let reason = &refused.reason;
-                lines.push(format!(
-                    "Part of the remaining gap resembles another effect with more evidence ({evidence:.0}) than any named effect, but contradicts it: {looks}; however, {reason}."
-                ));
-            }
+            let further = &found.answer.further;
+            let named_any = !found.answer.chosen.members.is_empty();
+            let suspect = further.instead.as_ref().filter(|_| further.refutes());
+            lines.extend(suspect.map(|free| format!("Outside the catalogue: {}.", in_place_of(free))));
+            let near = nearest(inputs, found).into_iter().next();
+            let near = near.filter(|near| left && named_any && near.evidence > LEFT);
+            lines.extend(near.map(|near| {
+                format!(
+                    "Beside the named effects, a further one has an evidence of {:.0}: {}. It lacks {}.",
+                    near.evidence, near.says, near.wants
+                )
+            }));
+            let tolerance = further.tolerance.as_ref().filter(|_| suspect.is_none() && left);
+            lines.extend(tolerance.map(|free| {
+                let (parameter, tolerance) = (&free.parameter, &free.tolerance);
+                format!(
+                    "`{parameter}` ({tolerance}) would have to differ by {:.1} declared standard deviations.",
+                    free.deviations.abs()
+                )
+            }));
             lines.push(match named.is_empty() {
-                true if found.answer.suspect.is_some() || found.answer.contradicting.is_some() => {
+                true if suspect.is_some() => {
                     "With the closest effects, no remaining difference exceeds the allowed one.".into()
                 }
                 true if left => {

@@ -133,8 +133,6 @@ pub struct Tolerance {
     /// A further standard deviation for the same parameter, independent of the declared one. An
     /// effect must exceed both.
     pub besides: f64,
-    /// Whether each scaled parameter is also tested as a cause outside the catalogue.
-    pub suspects: bool,
 }
 
 /// Allowed discrepancy of the simulation without an effect: one standard deviation.

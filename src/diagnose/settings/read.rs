@@ -33,18 +33,8 @@ const GROUP: [&str; 14] = [
     "offset", "gain", "axis", "says", "unit",
 ];
 const SHAPE: [&str; 3] = ["range", "percentile", "wheel radius"];
-const TOLERANCE: [&str; 10] = [
-    "default",
-    "unit",
-    "expected",
-    "scales",
-    "adds",
-    "sets",
-    "each section",
-    "shared",
-    "besides",
-    "suspects",
-];
+const TOLERANCE: [&str; 9] =
+    ["default", "unit", "expected", "scales", "adds", "sets", "each section", "shared", "besides"];
 const RESPONSE: [&str; 4] = ["levels", "others", "groups", "common"];
 const DISCREPANCY: [&str; 7] = ["of", "channels", "sd", "together", "sections", "times", "means"];
 
@@ -369,7 +359,6 @@ impl Reader<'_> {
                 per_section,
                 shared,
                 besides: self.spread(node, "besides", 0.0),
-                suspects: self.flag(node, "suspects"),
             });
         }
         for node in node.get("discrepancies").map_or(&[][..], Node::items) {
