@@ -401,7 +401,7 @@ fn says(
             let suspect = further.instead.as_ref().filter(|_| further.refutes());
             lines.extend(suspect.map(|free| format!("Outside the catalogue: {}.", in_place_of(free))));
             let near = nearest(inputs, found).into_iter().next();
-            let near = near.filter(|near| left && named_any && near.evidence > LEFT);
+            let near = near.filter(|_| named_any && further.evidence > LEFT);
             lines.extend(near.map(|near| {
                 format!(
                     "Beside the named effects, a further one has an evidence of {:.0}: {}. It lacks {}.",
