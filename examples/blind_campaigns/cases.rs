@@ -1,24 +1,29 @@
-//! Hidden effects by campaign. Four sets with separate seeds: `derive` for the choice of
-//! thresholds, `score` for the scores, `doubt` for the scores of cases without a cause in the
-//! catalogue, `test` for the tests.
+//! Hidden effects by campaign. Four sets of fixed cases with separate seeds: `derive` for the choice
+//! of thresholds, `score` for the scores, `doubt` for the scores of cases without a cause in the
+//! catalogue, `test` for the tests; and `fresh`, whose cases and sizes are drawn from the seed.
 
+use fishplate::effects::Gauss;
 use fishplate::model::{TrackTable, Vehicle};
 
-use super::vehicles::{COACH, Design, RAILCAR, WAGON};
+use super::vehicles::{COACH, Design, LOCOMOTIVE, RAILCAR, WAGON};
 
 /// A set of campaigns.
+#[derive(Clone, Copy)]
 pub struct Set {
     pub name: &'static str,
-    pub seed: u64,
+    /// None: it is to be given on the command line.
+    pub seed: Option<u64>,
     pub sections_per_zone: usize,
-    pub cases: fn() -> Vec<Case>,
+    /// The cases, from the seed.
+    pub cases: fn(u64) -> Vec<Case>,
 }
 
-pub const SETS: [Set; 4] = [
-    Set { name: "derive", seed: 4_100_000, sections_per_zone: 4, cases: derive },
-    Set { name: "score", seed: 91_700_000, sections_per_zone: 4, cases: score },
-    Set { name: "doubt", seed: 43_300_000, sections_per_zone: 4, cases: doubt },
-    Set { name: "test", seed: 9_700_000, sections_per_zone: 3, cases: test },
+pub const SETS: [Set; 5] = [
+    Set { name: "derive", seed: Some(4_100_000), sections_per_zone: 4, cases: derive },
+    Set { name: "score", seed: Some(91_700_000), sections_per_zone: 4, cases: score },
+    Set { name: "doubt", seed: Some(43_300_000), sections_per_zone: 4, cases: doubt },
+    Set { name: "test", seed: Some(9_700_000), sections_per_zone: 3, cases: test },
+    Set { name: "fresh", seed: None, sections_per_zone: 4, cases: fresh },
 ];
 
 /// A campaign.
@@ -27,7 +32,7 @@ pub struct Case {
     pub kind: &'static str,
     pub design: &'static Design,
     /// As on a command line; `~` marks numbers that are drawn within 15 %.
-    pub effects: Vec<&'static str>,
+    pub effects: Vec<String>,
     pub outside: Option<Outside>,
 }
 
@@ -121,13 +126,13 @@ fn numbered(rows: Vec<Row>) -> Vec<Case> {
         number: at + 1,
         kind,
         design,
-        effects: effects.to_vec(),
+        effects: effects.iter().map(|effect| (*effect).to_string()).collect(),
         outside,
     };
     rows.into_iter().enumerate().map(case).collect()
 }
 
-fn derive() -> Vec<Case> {
+fn derive(_: u64) -> Vec<Case> {
     let nothing = [&COACH, &WAGON, &RAILCAR, &COACH, &WAGON, &RAILCAR, &COACH, &WAGON];
     let mut rows: Vec<Row> =
         nothing.into_iter().map(|design| ("none", design, &[][..], None)).collect();
@@ -168,7 +173,7 @@ fn derive() -> Vec<Case> {
     numbered(rows)
 }
 
-fn score() -> Vec<Case> {
+fn score(_: u64) -> Vec<Case> {
     let designs = [&COACH, &RAILCAR, &WAGON];
     let mut rows: Vec<Row> = (0..12).map(|n| ("none", designs[n % 3], &[][..], None)).collect();
     let singles: [(&Design, &[&str]); 32] = [
@@ -256,14 +261,14 @@ fn score() -> Vec<Case> {
 
 /// No effect, and all causes outside the catalogue, on every vehicle; small shares need more
 /// campaigns than `score` has.
-fn doubt() -> Vec<Case> {
+fn doubt(_: u64) -> Vec<Case> {
     let designs = [&COACH, &RAILCAR, &WAGON];
     let mut rows: Vec<Row> = (0..24).map(|n| ("none", designs[n % 3], &[][..], None)).collect();
     rows.extend((0..24).map(|n| ("outside", designs[n % 3], &[][..], Some(Outside::ALL[n / 3]))));
     numbered(rows)
 }
 
-fn test() -> Vec<Case> {
+fn test(_: u64) -> Vec<Case> {
     let rows: Vec<Row> = vec![
         ("none", &COACH, &[], None),
         ("single", &RAILCAR, &["friction=~0.2"], None),
@@ -271,4 +276,124 @@ fn test() -> Vec<Case> {
         ("outside", &COACH, &[], Some(Outside::Drift)),
     ];
     numbered(rows)
+}
+
+/// Effects of the drawn cases, and whether they require a soft secondary suspension. In braces:
+/// words or ranges of a number, one of which is drawn.
+const DRAWN: [(&str, bool); 26] = [
+    ("friction={0.15..0.25|0.45..0.55}", false),
+    ("friction={0.14..0.2} in zone 4", false),
+    ("worn_profile.profile.worn_share={0.5..1}", false),
+    ("worn_profile.profile.conicity_scale={0.5..0.65|1.5..2.2}", false),
+    (
+        "body_bending.body_bending.frequency={7..11}; \
+         body_bending.body_bending.modal_mass={4000..9000}",
+        true,
+    ),
+    ("bumpstop_gap={0.006..0.015}", true),
+    ("yaw_damper_loss={0.1..0.4}", true),
+    ("centre_friction={5000..14000}", true),
+    ("payload={1500..6000}", false),
+    ("payload_offset={0.04..0.1|-0.1..-0.04}", false),
+    ("anti_roll_bar={0.1..0.5|1.5..2}", true),
+    ("primary_yaw_stiffness={0.3..0.55|1.8..3}", false),
+    ("vertical_damper_loss={0.1..0.45}", true),
+    ("lateral_damper_loss={0.1..0.45}", true),
+    (
+        "out_of_roundness.out_of_roundness.amplitude={0.0004..0.001}; \
+         out_of_roundness.out_of_roundness.wheelset={1|2|3|4}; \
+         out_of_roundness.out_of_roundness.harmonic={1|2|3}",
+        false,
+    ),
+    ("track_irregularity_scale={0.6..0.75|1.35..1.8}", false),
+    ("cant_error={14..30|-30..-14}", false),
+    ("cant_error={15..25} in direction {left|right}", false),
+    ("crosswind={6000..15000|-15000..-6000}", false),
+    (
+        "sensor_gain={0.75..0.86|1.14..1.25} on {Y_1L|Y_2R|Y_3R|Y_4L|Q_1R|Q_2L|Q_3L|az_I|ay_II}",
+        false,
+    ),
+    ("sensor_offset={5..9|-9..-5} on {Y_1L|Y_2L|Y_3R|Q_2R|Q_4L}", false),
+    ("sync_shift={4..14|-14..-4}", false),
+    ("filter_mismatch={3.5..8}", false),
+    ("channel_swap on {Y_1L, Y_1R|Y_2R, Y_3R|Q_1L, Q_2L|Q_3L, Q_3R}", false),
+    ("polarity=-1 on {Y_1L|Y_2R|Y_4L|ay_I}", false),
+    ("crosstalk={0.04..0.1|-0.1..-0.04}", false),
+];
+
+/// Pairs of the drawn cases, by the beginnings of two effects.
+const DRAWN_PAIRS: [[&str; 2]; 12] = [
+    ["friction={0.15", "vertical_damper_loss"],
+    ["payload=", "lateral_damper_loss"],
+    ["cant_error={14", "sensor_gain"],
+    ["primary_yaw_stiffness", "sync_shift"],
+    ["crosswind", "track_irregularity_scale"],
+    ["worn_profile.profile.conicity_scale", "sensor_offset"],
+    ["payload_offset", "friction={0.15"],
+    ["crosstalk", "payload="],
+    ["out_of_roundness", "crosswind"],
+    ["filter_mismatch", "cant_error={14"],
+    ["anti_roll_bar", "polarity"],
+    ["yaw_damper_loss", "cant_error={14"],
+];
+
+/// Every effect once, and 20 cases without an effect, 10 causes outside the catalogue, 10 pairs, on
+/// four vehicles in turn.
+fn fresh(seed: u64) -> Vec<Case> {
+    const DESIGNS: [&Design; 4] = [&COACH, &RAILCAR, &WAGON, &LOCOMOTIVE];
+    let random = &mut Gauss::new(seed);
+    let mut cases: Vec<Case> = Vec::new();
+    let mut turn = random.below(DESIGNS.len());
+    let mut design = |sprung: bool| loop {
+        turn = (turn + 1) % DESIGNS.len();
+        if !sprung || DESIGNS[turn].secondary_suspension {
+            return DESIGNS[turn];
+        }
+    };
+    let mut add = |kind, design, effects: Vec<String>, outside| {
+        cases.push(Case { number: cases.len() + 1, kind, design, effects, outside });
+    };
+    for (effect, sprung) in DRAWN {
+        add("single", design(sprung), sized(effect, random), None);
+    }
+    (0..20).for_each(|_| add("none", design(false), Vec::new(), None));
+    for outside in (0..10).map(|at| Outside::ALL[at % Outside::ALL.len()]) {
+        // Without a secondary suspension, its springs are nearly rigid in any case.
+        let sprung = matches!(outside, Outside::StiffSecondary | Outside::SoftLateral);
+        add("outside", design(sprung), Vec::new(), Some(outside));
+    }
+    let mut pairs = DRAWN_PAIRS.to_vec();
+    for _ in 0..10 {
+        let pair = pairs.swap_remove(random.below(pairs.len()));
+        let of: Vec<(&str, bool)> = pair
+            .iter()
+            .filter_map(|begin| DRAWN.into_iter().find(|(effect, _)| effect.starts_with(begin)))
+            .collect();
+        let on = design(of.iter().any(|(_, sprung)| *sprung));
+        add("pair", on, of.iter().flat_map(|(effect, _)| sized(effect, random)).collect(), None);
+    }
+    cases
+}
+
+/// An effect with what is in braces drawn, as texts for a command line.
+fn sized(effect: &str, random: &mut Gauss) -> Vec<String> {
+    let mut text = String::new();
+    let mut rest = effect;
+    while let Some((before, (choice, after))) =
+        rest.split_once('{').and_then(|(before, after)| Some((before, after.split_once('}')?)))
+    {
+        let choices: Vec<&str> = choice.split('|').collect();
+        let one = choices[random.below(choices.len())];
+        text += before;
+        let ends = one
+            .split_once("..")
+            .and_then(|(low, high)| Some((low.parse::<f64>().ok()?, high.parse::<f64>().ok()?)));
+        match ends {
+            Some((low, high)) => text += &format!("{:.5}", low + (high - low) * random.uniform()),
+            None => text += one,
+        }
+        rest = after;
+    }
+    text += rest;
+    text.split("; ").map(str::to_string).collect()
 }

@@ -30,20 +30,26 @@ fn main() {
     let after = |key: &str| {
         arguments.iter().position(|one| one == key).and_then(|at| arguments.get(at + 1))
     };
+    let number = |key: &str| after(key).and_then(|number| number.parse::<u64>().ok());
     let set = arguments.first().and_then(|name| SETS.iter().find(|set| set.name == name));
-    let (Some(set), Some(out)) = (set, after("--out")) else {
+    let seed = number("--seed").or(set.and_then(|set| set.seed));
+    let (Some(set), Some(seed), Some(out)) = (set, seed, after("--out")) else {
         let names: Vec<&str> = SETS.iter().map(|set| set.name).collect();
-        eprintln!("arguments: SET --out FOLDER [--only N], with SET one of {}", names.join(", "));
+        eprintln!(
+            "arguments: SET --out FOLDER [--seed N] [--only N], with SET one of {}; `fresh` needs a \
+             seed",
+            names.join(", ")
+        );
         std::process::exit(2);
     };
-    let only: Option<usize> = after("--only").and_then(|number| number.parse().ok());
-    let cases: Vec<Case> = (set.cases)()
+    let only = number("--only").map(|number| number as usize);
+    let cases: Vec<Case> = (set.cases)(seed)
         .into_iter()
         .filter(|case| only.is_none_or(|number| case.number == number))
         .collect();
     let failed: Vec<String> = cases
         .par_iter()
-        .filter_map(|case| write::campaign(&PathBuf::from(out), set, case).err())
+        .filter_map(|case| write::campaign(&PathBuf::from(out), (set, seed), case).err())
         .collect();
     failed.iter().for_each(|why| eprintln!("{why}"));
     println!("{} campaigns in {out}", cases.len() - failed.len());

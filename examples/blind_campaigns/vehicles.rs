@@ -1,4 +1,4 @@
-//! Three vehicles: a coach, a lighter and shorter railcar, a loaded wagon.
+//! Four vehicles: a coach, a lighter and shorter railcar, a loaded wagon, a heavy locomotive.
 
 use std::path::Path;
 
@@ -95,6 +95,48 @@ pub const WAGON: Design = Design {
         ("secondary.centre_friction_angle", 2.0e-3),
         ("contact.vertical_stiffness", 7.0e7),
         ("contact.vertical_damping", 1.2e5),
+    ],
+};
+
+/// Four axles of 20 t, 98 kN a wheel.
+pub const LOCOMOTIVE: Design = Design {
+    name: "Locomotive",
+    category: "locomotive",
+    secondary_suspension: true,
+    speeds: (60.0, 140.0),
+    deficiency: 100.0,
+    differs: &[
+        ("geometry.half_bogie_spacing", 5.0),
+        ("geometry.half_wheelbase", 1.4),
+        ("car_body.mass", 48_000.0),
+        ("car_body.inertia_roll", 8.0e4),
+        ("car_body.inertia_pitch", 1.1e6),
+        ("car_body.inertia_yaw", 1.1e6),
+        ("car_body.cog_height", 1.9),
+        ("car_body.floor_height", 1.5),
+        ("bogie.mass", 10_000.0),
+        ("bogie.inertia_roll", 6000.0),
+        ("bogie.inertia_pitch", 1.2e4),
+        ("bogie.inertia_yaw", 1.6e4),
+        ("wheelset.mass", 3000.0),
+        ("wheelset.inertia_roll", 1900.0),
+        ("wheelset.inertia_yaw", 1900.0),
+        ("wheelset.inertia_spin", 400.0),
+        ("wheelset.radius", 0.6),
+        ("primary.kx", 2.0e7),
+        ("primary.ky", 6.0e6),
+        ("primary.kz", 1.6e6),
+        ("primary.cz", 2.5e4),
+        ("primary.half_spacing", 1.05),
+        ("secondary.kx", 4.0e5),
+        ("secondary.ky", 4.0e5),
+        ("secondary.kz", 1.2e6),
+        ("secondary.cz", 6.0e4),
+        ("secondary.cy", 6.0e4),
+        ("secondary.anti_roll_stiffness", 5.0e5),
+        ("secondary.yaw_damper_damping", 4.0e5),
+        ("contact.vertical_stiffness", 8.0e7),
+        ("contact.vertical_damping", 1.5e5),
     ],
 };
 

@@ -19,6 +19,7 @@ use crate::prepare::for_diagnosis;
 use crate::problem::Severity;
 use crate::result::diagnosis::Diagnosis;
 use crate::simulate::{Builtin, Section, Simulator, Strict};
+use crate::words;
 
 #[derive(Debug, Args)]
 pub struct Diagnose {
@@ -338,7 +339,7 @@ fn summary(diagnosis: &Diagnosis) -> Lines {
     out += &diagnosis.campaign;
     out += "\n";
     out += &format!("Verdict: {}\n", diagnosis.verdict);
-    out.extend(diagnosis.says.iter().map(|line| format!("  {line}\n")));
+    out.extend(diagnosis.says.iter().map(|line| format!("  {}\n", words::text(line))));
     out.extend(remark(&diagnosis.fit).map(|remark| format!("  Remark: {}\n", remark.text())));
     out += "\n";
     out += "Location of the gap:\n";

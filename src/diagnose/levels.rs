@@ -226,8 +226,6 @@ pub mod causes {
 pub mod rivals {
     /// Largest loss of evidence of a rival that the data do not discriminate from the answer.
     pub const NEAREST: f64 = 8.0;
-    /// The same as a share of the member's evidence: the model error of large effects is large.
-    pub const NEAREST_SHARE: f64 = 0.12;
     /// Prior weight of a cause outside the catalogue against the answer: in general, where a
     /// vehicle parameter outside the catalogue explains more, and where a residual remains.
     pub const OUTSIDE: f64 = 0.05;
@@ -271,6 +269,8 @@ pub mod score {
 pub mod search {
     /// Largest number of effects in an answer.
     pub const MOST: usize = 3;
+    /// The same with those within their declared tolerance, which are fitted and not named.
+    pub const TOGETHER: usize = 5;
     /// Number of candidates whose joint evidence is computed, of those with the most evidence for
     /// what a set leaves; of second effects and replacements; and their least evidence. With the
     /// members fixed, an effect similar to a member has little evidence left.
@@ -306,7 +306,8 @@ pub mod iterate {
     /// Largest number of rounds, and of fits within one with the fitted sizes simulated.
     pub const ROUNDS: usize = 4;
     pub const POLISHED: usize = 3;
-    /// Relative difference of sizes up to which the answer stands still.
+    /// Relative difference of sizes up to which the answer stands still, where that is more than their
+    /// standard error.
     pub const STILL: f64 = 0.1;
 }
 
@@ -326,8 +327,8 @@ pub mod point {
 
 pub mod heterogeneity {
     /// Probability below which the sizes differ, among all tests (Bonferroni). Real responses
-    /// deviate from simulated ones: right answers had 1e-6 at least.
-    pub const CHANCE: f64 = 1e-5;
+    /// deviate from simulated ones: right answers had 2e-7 at least, before the correction.
+    pub const CHANCE: f64 = 1e-6;
     /// Least length of the change in a part of a view, in standard deviations.
     pub const SEEN: f64 = 2.0;
 }

@@ -228,7 +228,7 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
     let fitter = Fitter::new(&fitted.whitener, &fitted.candidates, masks.clone());
     let search = Search::new(&fitter, &fitted.z, &bars, &far);
     let set = chosen.set();
-    let members = 0..set.len();
+    let members = 0..chosen.members.len();
     let mut rivals: Vec<(usize, Fitted, f64)> = members
         .clone()
         .flat_map(|at| {
@@ -241,12 +241,12 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
     rivals.sort_by(|a, b| a.2.total_cmp(&b.2));
     let stable = |at: usize| stability(&fitter, &fitted.z, &chosen, at, &strata, inputs.seed);
     let nearest = search.further(&set, &[], TRIED);
-    let free = free((&alone, &fitted), &masks, &set, &bars, &far);
+    let free = free((&alone, &fitted), &masks, &chosen, &bars, &far);
     let answer = Answer {
         rivals,
         further: Further::new(&fitted, &nearest, &free, &far),
         nearest,
-        used: used(&fitted, &chosen),
+        used: used(&fitted, &chosen, &far),
         heterogeneity: heterogeneity(&fitter, &chosen, &views(&seen, settings)),
         stability: members.map(stable).collect(),
         lack_after: lack_before.clone(),
@@ -270,7 +270,7 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
         rates,
         runs,
     };
-    if !found.answer.chosen.members.is_empty() {
+    if !set.is_empty() {
         found.answer.lack_after = lack_of_fit(&found.wider(), &found.seen, &found.left());
     }
     Some(found)
@@ -280,8 +280,7 @@ impl Found {
     /// The residual of the answer, not whitened.
     #[must_use]
     pub fn left(&self) -> Vec<f64> {
-        let members = self.answer.chosen.members.iter();
-        members.fold(self.fitted.difference.clone(), |rest, member| {
+        self.answer.chosen.all().fold(self.fitted.difference.clone(), |rest, member| {
             less(&rest, &member.change(&self.fitted.candidates, &self.masks))
         })
     }
@@ -293,7 +292,7 @@ impl Found {
         let mut wider = self.fitted.covariance.clone();
         let candidates = &self.fitted.candidates;
         let simulated =
-            self.answer.chosen.members.iter().filter(|member| !candidates[member.candidate].exact);
+            self.answer.chosen.all().filter(|member| !candidates[member.candidate].exact);
         for member in simulated {
             let change = member.change(candidates, &self.masks);
             wider.diagonal.iter_mut().zip(change).for_each(|(variance, change)| {

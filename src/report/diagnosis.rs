@@ -11,6 +11,7 @@ use crate::result::diagnosis::{
     Cause, Diagnosis, Invariant, NamedEffect, Picture, QuantityShrink, Ratio, Shape, Shrink, Slope,
     Trend, Value, Where,
 };
+use crate::words;
 
 /// Number of significant cells listed, and of cells listed where fewer are significant;
 /// diagnosis.json contains all.
@@ -47,7 +48,7 @@ pub fn document(found: &Diagnosis, before: &Certification) -> Document {
     };
     let opening = Opening {
         headline: Finding::new(holds, &found.verdict, &found.verdict, &found.verdict),
-        sentence: found.says.first().cloned().unwrap_or_default(),
+        sentence: words::or_nothing(found.says.first()),
         facts: vec![
             Fact::new("Verdict before", before.verdict_word()),
             Fact::new("Verdict with the effects", verdict_after),
@@ -92,7 +93,9 @@ pub fn figures(found: &Diagnosis) -> Vec<(String, String)> {
 }
 
 fn answer(found: &Diagnosis) -> Chapter {
-    let mut blocks = vec![Block::list(found.says.iter().map(number::raised))];
+    let mut blocks = vec![Block::list(
+        found.says.iter().map(|line| number::raised(&String::from(words::text(line)))),
+    )];
     if let Some(measure) = &found.discriminating_measurement {
         blocks.push(Block::text(format!("The causes can be distinguished by: {measure}.")));
     }

@@ -7,7 +7,7 @@ use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Remark, Verdict, told, zones};
+use super::{Remark, Statement, Verdict, told, zones};
 
 /// A diagnosis.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
@@ -18,7 +18,9 @@ pub struct Diagnosis {
     /// `explained`, `ambiguous`, `unexplained` or `no significant gap`.
     pub verdict: Cow<'static, str>,
     /// The verdict in sentences.
-    pub says: Vec<String>,
+    #[serde(flatten, with = "told::statements")]
+    #[schemars(with = "told::Statements<Statement>")]
+    pub says: Vec<Statement>,
     pub fit: Fit,
     /// The verdict of the protocol on the campaign as it is, and with the effects by
     /// cross-validation.

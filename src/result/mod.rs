@@ -22,6 +22,7 @@ pub mod report;
 mod scope;
 mod shrink;
 mod spread;
+mod statement;
 pub mod study;
 mod told;
 pub mod verdict;
@@ -51,6 +52,7 @@ pub use remark::{OutlyingSection, RecordsOf, Remark, SectionOffset};
 pub use report::{Identification, ReportItem};
 pub use scope::{RecordName, Scope, StatisticName, zones};
 pub use spread::{ClassSpread, Furthest, OfRecord, Spread};
+pub use statement::{RemainsOf, Statement};
 pub use verdict::{Outcome, Verdict, VerdictResult};
 
 /// Version of the program that writes results.

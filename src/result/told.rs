@@ -79,6 +79,10 @@ keys! {
     reasons Reasons<R> { reasons: Vec<String>, reasons_data: Vec<R>, missing if "Vec::is_empty" }
     /// What a check or a finding says.
     says Says<D> { says: String, data: D }
+    /// Any number of sentences.
+    statements Statements<S> {
+        says: Vec<String>, says_data: Vec<S>, missing if "Vec::is_empty"
+    }
     /// A cause, or none.
     cause NoneOrCause<R> {
         cause: Option<String>, cause_data: Option<R>, missing if "Option::is_none"

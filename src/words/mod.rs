@@ -133,7 +133,9 @@ mod tests {
     use serde::de::DeserializeOwned;
 
     use super::*;
-    use crate::result::{Channels, FindingData, Reason, Remark, Sections, Unmatched, VehicleValue};
+    use crate::result::{
+        Channels, FindingData, Reason, Remark, Sections, Statement, Unmatched, VehicleValue,
+    };
 
     /// A value for a field, whatever its type: the first that fits.
     const FITS: [&str; 15] = [
@@ -147,7 +149,7 @@ mod tests {
         "{\"code\": \"no-value\"}",
         "{\"code\": \"said\", \"says\": \"word\"}",
         "\"section\"",
-        "[{\"name\": \"a\", \"value\": \"1\", \"unit\": \"m\", \"by\": -1.5, \"verdict\": \"a\", \"word\": \"b\", \"zone\": \"1\", \"used\": 2, \"section\": \"S\", \"reason\": \"c\", \"title\": \"a\", \"default\": \"2\", \"set_by\": \"campaign\", \"records\": \"a\", \"campaign\": \"b\", \"offset\": 1.5, \"channels\": [\"Y\"]}]",
+        "[{\"name\": \"a\", \"value\": \"1\", \"unit\": \"m\", \"by\": -1.5, \"verdict\": \"a\", \"word\": \"b\", \"zone\": \"1\", \"used\": 2, \"section\": \"S\", \"reason\": \"c\", \"title\": \"a\", \"channel\": \"Y\", \"dynamic\": true, \"default\": \"2\", \"set_by\": \"campaign\", \"records\": \"a\", \"campaign\": \"b\", \"offset\": 1.5, \"channels\": [\"Y\"]}]",
         "[{\"vehicle\": \"a\", \"value\": {\"code\": \"si\", \"value\": 2.0}}]",
         "[]",
         "{\"code\": \"nothing-to-confirm\"}",
@@ -194,6 +196,7 @@ mod tests {
         let mut all = examples::<Reason>();
         all.extend(examples::<FindingData>());
         all.extend(examples::<Remark>());
+        all.extend(examples::<Statement>());
         all.extend(examples::<Unmatched>());
         all.extend(examples::<VehicleValue>());
         all.push(serde_json::to_value(Sections::of(&["S01"], 2)).expect("data"));
@@ -205,7 +208,7 @@ mod tests {
             "code": "suspected-factor", "by": 9.8, "of_unit": true, "units": ["kgf", "N"], "inverse": true,
         }));
         let mut used: BTreeSet<String> =
-            ["and", "titled", "usable-sections"].map(String::from).into();
+            ["and", "times-simulated", "titled", "usable-sections"].map(String::from).into();
         for example in &all {
             let code = example["code"].as_str().expect("a code");
             used.insert(code.to_owned());

@@ -18,7 +18,7 @@ const COULOMB: f64 = 20.0;
 const RATE: f64 = 200.0;
 
 /// Whether Python is there; tests that need it say so and end.
-fn has_python() -> bool {
+pub fn has_python() -> bool {
     let found = Command::new("python3")
         .arg("-c")
         .arg("pass")
@@ -77,33 +77,38 @@ const FILLED: &str = "
     return {'force': force}
 ";
 
-struct Machine {
+pub struct Machine {
     folder: tempfile::TempDir,
 }
 
 impl Machine {
     /// `new` for a drive.
     fn new(runs: usize, seconds: f64) -> Self {
+        Self::of("drive", runs, &|folder, run| pair(folder, run, seconds))
+    }
+
+    /// `new` for a kind of machine, from pairs of records that are written into a folder.
+    pub fn of(domain: &str, runs: usize, pair: &dyn Fn(&Path, usize) -> [PathBuf; 2]) -> Self {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let mut command = program();
-        command.current_dir(folder.path()).args(["new", "axis", "--domain", "drive"]);
+        command.current_dir(folder.path()).args(["new", "axis", "--domain", domain]);
         for run in 0..runs {
-            command.arg("--from").args(pair(folder.path(), run, seconds));
+            command.arg("--from").args(pair(folder.path(), run));
         }
         let done = ran(&mut command);
         assert_eq!(done.code, 0, "{}{}", done.stdout, done.stderr);
         Self { folder }
     }
 
-    fn path(&self, name: &str) -> PathBuf {
+    pub fn path(&self, name: &str) -> PathBuf {
         self.folder.path().join("axis").join(name)
     }
 
-    fn text(&self, name: &str) -> String {
+    pub fn text(&self, name: &str) -> String {
         fs::read_to_string(self.path(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
     }
 
-    fn change(&self, name: &str, from: &str, to: &str) {
+    pub fn change(&self, name: &str, from: &str, to: &str) {
         let text = self.text(name);
         assert!(text.contains(from), "{name} has no `{from}`:\n{text}");
         fs::write(self.path(name), text.replacen(from, to, 1)).expect("written");
@@ -117,7 +122,7 @@ impl Machine {
     }
 
     /// Fills in the stub.
-    fn fill(&self, body: &str) {
+    pub fn fill(&self, body: &str) {
         self.change(
             "simulator.py",
             "    raise NotImplementedError(\"fill in `simulate` in simulator.py\")\n",
@@ -129,7 +134,7 @@ impl Machine {
         ran(program().current_dir(self.path("")).args(words))
     }
 
-    fn diagnose(&self, more: &[&str]) -> Ran {
+    pub fn diagnose(&self, more: &[&str]) -> Ran {
         let words = [
             "diagnose",
             ".",

@@ -26,3 +26,4 @@ mod machines;
 mod model;
 mod pendulum;
 mod simulate;
+mod unlike_the_model;

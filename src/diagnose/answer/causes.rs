@@ -30,6 +30,11 @@ pub fn cause(inputs: &Inputs<'_>, found: &Found, members: &[Fitted], rank: usize
     }
 }
 
+/// The title of an effect.
+pub fn title<'a>(inputs: &'a Inputs<'_>, effect: &'a str) -> &'a str {
+    inputs.catalogue.effect(effect).map_or(effect, |effect| &effect.title)
+}
+
 fn in_words(effect: &NamedEffect) -> String {
     let values = effect.told().into_iter().map(|told| {
         let (parameter, value) = (&told.parameter, told.value);
@@ -175,7 +180,7 @@ fn named(inputs: &Inputs<'_>, found: &Found, member: &Fitted) -> NamedEffect {
     }
     NamedEffect {
         name: of.effect.clone(),
-        title: effect.map_or_else(|| of.effect.clone(), |effect| effect.title.clone()),
+        title: title(inputs, &of.effect).to_owned(),
         parameters,
         channels: of.channels.clone(),
         confined_to: found.masks[member.mask]

@@ -62,7 +62,7 @@ pub fn trained(found: &Found, fold: &[usize]) -> Vec<Fitted> {
     let size = found.seen.features.len();
     let whitener = found.fitted.covariance.part(&kept, &features).whitener();
     let part = |column: &[f64]| crate::diagnose::checks::channels::part(column, size, &view);
-    let members = &found.answer.chosen.members;
+    let members: Vec<Fitted> = found.answer.chosen.all().cloned().collect();
     let inside = |member: &Fitted| {
         let mut candidate = found.candidate(member).clone();
         let changed = candidate.nodes.iter_mut().filter(|node| !node.change.is_empty());
@@ -78,12 +78,14 @@ pub fn trained(found: &Found, fold: &[usize]) -> Vec<Fitted> {
     let z = whitener.apply(&part(&found.fitted.difference));
     let set: Vec<Member> =
         members.iter().enumerate().map(|(at, member)| (at, member.mask)).collect();
-    match joint::fit(&fitter, &z, &set) {
-        None => members.clone(),
+    let mut trained = match joint::fit(&fitter, &z, &set) {
+        None => members,
         Some(joint) => std::iter::zip(joint.members, members)
             .map(|(new, old)| Fitted { candidate: old.candidate, ..new })
             .collect(),
-    }
+    };
+    trained.truncate(found.answer.chosen.members.len());
+    trained
 }
 
 /// Records of all sections with the effects added; `members` by section.

@@ -2,18 +2,18 @@
 //! discriminate.
 
 use super::apart::{Apart, apart};
-use super::causes::cause;
+use super::causes::{cause, title};
 use super::verdict::Verdict;
 use crate::diagnose::fit::fitter::Fitted;
 use crate::diagnose::fit::set::plausible;
 use crate::diagnose::inputs::Inputs;
 use crate::diagnose::levels::rivals::{
-    NEAREST, NEAREST_SHARE, OUTSIDE, OUTSIDE_SUSPECTED, OUTSIDE_UNEXPLAINED, TEMPERATURE,
-    TOLD_APART,
+    NEAREST, OUTSIDE, OUTSIDE_SUSPECTED, OUTSIDE_UNEXPLAINED, TEMPERATURE, TOLD_APART,
 };
 use crate::diagnose::levels::search::TOLERANCE_SD;
 use crate::diagnose::run::{Found, deviations};
 use crate::effects::Effect;
+use crate::result::Statement;
 use crate::result::diagnosis::Cause;
 
 /// Sets in which another effect replaces one member, and whether the data discriminate them from
@@ -60,9 +60,7 @@ pub fn ambiguity(inputs: &Inputs<'_>, found: &Found) -> Vec<Cause> {
         if deviations(of, fit.size, inputs.settings, &found.declared) < TOLERANCE_SD {
             continue;
         }
-        let near = *fall
-            <= (NEAREST_SHARE * found.answer.chosen.members[*at].evidence).max(NEAREST)
-            && fit.evidence > found.rates.bars.least(of)
+        let near = *fall <= NEAREST && fit.evidence > found.rates.bars.least(of)
             || found
                 .answer
                 .stability
@@ -151,16 +149,11 @@ pub fn neither(
     found: &Found,
     causes: &[Cause],
     verdict: Verdict,
-) -> Option<String> {
+) -> Option<Statement> {
     let (names, apart) = nearest(found, causes)
         .filter(|(_, apart)| verdict == Verdict::Ambiguous && apart.now >= TOLD_APART)?;
-    let [one, other] = names
-        .map(|name| inputs.catalogue.effect(name).map_or(name, |effect| effect.title.as_str()));
-    Some(format!(
-        "{one} | {other}: their changes differ by {:.1} standard deviations on these sections. If one of them were the whole cause, these \
-         data would show which one. Therefore a further effect is present.",
-        apart.now
-    ))
+    let [one, other] = names.map(|name| title(inputs, name).to_owned());
+    Some(Statement::FurtherEffect { one, other, deviations: apart.now })
 }
 
 /// A member of the answer and the possible cause closest to it, by name.

@@ -5,7 +5,7 @@ use crate::diagnose::levels::common::NINETY;
 use crate::diagnose::levels::verdict::{MISFIT, ROOMY};
 use crate::diagnose::run::Found;
 use crate::result::diagnosis::{Fit, Shrink};
-use crate::result::{Remark, Verdict as OfProtocol};
+use crate::result::{Remark, Statement, Verdict as OfProtocol};
 
 /// The verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,11 +48,11 @@ pub struct Facts {
     pub tied: bool,
     /// Whether the criteria of the protocol are not met without effects.
     pub protocol_fails: bool,
-    /// The gap on sections excluded from the fit that the effects remove, as a share; nothing where
-    /// no quantity of the protocol feels them.
-    pub removed: Option<f64>,
+    /// The gap on sections excluded from the fit that the effects remove, as a share, and the upper
+    /// end of its interval; nothing where no quantity of the protocol feels them.
+    pub removed: Option<(f64, f64)>,
     /// The same on the sections that the campaign holds out.
-    pub held_out: Option<f64>,
+    pub held_out: Option<(f64, f64)>,
     /// What is left, in units of what is allowed.
     pub misfit: f64,
 }
@@ -61,69 +61,54 @@ pub struct Facts {
 struct Rule {
     applies: fn(&Facts) -> bool,
     verdict: Verdict,
-    reason: Option<&'static str>,
+    reason: Option<Statement>,
 }
 
-const fn rule(applies: fn(&Facts) -> bool, verdict: Verdict, reason: Option<&'static str>) -> Rule {
+const fn rule(applies: fn(&Facts) -> bool, verdict: Verdict, reason: Option<Statement>) -> Rule {
     Rule { applies, verdict, reason }
 }
 
 /// In this order.
-const RULES: [Rule; 11] = [
+static RULES: [Rule; 12] = [
     rule(|of| !of.named && (of.faulty || of.lacking || of.systematic), Verdict::Unexplained, None),
     rule(
         |of| !of.named && of.protocol_fails,
         Verdict::Unexplained,
-        Some(
-            "The acceptance criteria are not met, but the gap lies within what noise and the declared tolerances allow: no effect can be named.",
-        ),
+        Some(Statement::CriteriaNotMet),
     ),
     rule(|of| !of.named, Verdict::NoSignificantGap, None),
     rule(|of| of.systematic || of.much_left, Verdict::Unexplained, None),
+    rule(|of| of.misfit > MISFIT, Verdict::Unexplained, Some(Statement::LargerThanAllowed)),
     rule(
-        |of| of.misfit > MISFIT,
+        |of| of.removed.is_some_and(|(_, high)| high <= 0.0),
         Verdict::Unexplained,
-        Some(
-            "With the named effects, the remaining differences are still larger than noise, tolerances and model discrepancy allow.",
-        ),
+        Some(Statement::NotSmallerOnExcluded),
     ),
     rule(
-        |of| of.removed.is_some_and(|removed| removed <= 0.0),
+        |of| of.held_out.is_some_and(|(_, high)| high <= 0.0),
         Verdict::Unexplained,
-        Some(
-            "The named effects improve the fit, but do not decrease the gap on sections excluded from the fit.",
-        ),
+        Some(Statement::NotSmallerOnHeldOut),
     ),
+    rule(|of| of.moving, Verdict::Ambiguous, Some(Statement::StillMoving)),
     rule(
-        |of| of.held_out.is_some_and(|removed| removed <= 0.0),
-        Verdict::Unexplained,
-        Some(
-            "The named effects improve the fit, but do not decrease the gap on the sections that the campaign holds out.",
-        ),
-    ),
-    rule(
-        |of| of.moving,
+        |of| [of.removed, of.held_out].iter().flatten().any(|(removed, _)| *removed <= 0.0),
         Verdict::Ambiguous,
-        Some(
-            "Names and sizes do not stand still when responses and tolerances are simulated at the fitted sizes.",
-        ),
+        Some(Statement::NotSurelySmaller),
     ),
     rule(|of| of.tied, Verdict::Ambiguous, None),
     rule(
         |of| of.removed.is_none() && of.protocol_fails,
         Verdict::Explained,
-        Some(
-            "No quantity of the protocol depends on the named effects: they do not explain why its criteria are not met.",
-        ),
+        Some(Statement::CriteriaNotTouched),
     ),
     rule(|_| true, Verdict::Explained, None),
 ];
 
 /// The verdict, and its reason where the answer does not state it elsewhere.
 #[must_use]
-pub fn verdict(facts: &Facts) -> (Verdict, Option<&'static str>) {
+pub fn verdict(facts: &Facts) -> (Verdict, Option<Statement>) {
     let first = RULES.iter().find(|rule| (rule.applies)(facts));
-    first.map_or((Verdict::Unexplained, None), |rule| (rule.verdict, rule.reason))
+    first.map_or((Verdict::Unexplained, None), |rule| (rule.verdict, rule.reason.clone()))
 }
 
 /// Whether criteria of the protocol are not met.
@@ -132,13 +117,14 @@ pub fn fails(protocol: OfProtocol) -> bool {
     protocol == OfProtocol::NotValidated
 }
 
-/// The share of the gap that the effects remove on sections excluded from the fit: the larger of
-/// that of all quantities and of those that the effects change. Nothing where they change none.
+/// The share of the gap that the effects remove on sections excluded from the fit, and the upper
+/// end of its interval: of all quantities or of those that the effects change, whichever is larger.
+/// Nothing where they change none.
 #[must_use]
-pub fn removed(shrink: Option<&Shrink>) -> Option<f64> {
+pub fn removed(shrink: Option<&Shrink>) -> Option<(f64, f64)> {
     let shrink = shrink?;
     let touched = shrink.touched.as_ref()?;
-    Some(shrink.fraction_removed.max(touched.fraction_removed))
+    Some((shrink.fraction_removed.max(touched.fraction_removed), shrink.high.max(touched.high)))
 }
 
 /// How well the answer fits: chi-squared of all that is left, with the model error of the simulated
@@ -149,7 +135,7 @@ pub fn fit(found: &Found) -> Fit {
     let z = found.wider().whitener().apply(&found.left());
     let features = z.len().max(1) as f64;
     let chi_squared: f64 = z.iter().map(|z| z * z).sum();
-    let freedom = (features - found.answer.chosen.members.len() as f64).max(1.0);
+    let freedom = (features - found.answer.chosen.set().len() as f64).max(1.0);
     let p_value = ChiSquared::new(freedom).map_or(f64::NAN, |law| law.sf(chi_squared));
     let per_feature = chi_squared / features;
     let scale = per_feature.sqrt();
@@ -182,7 +168,8 @@ mod tests {
     /// Each fact alone, from an answer that explains everything and from no answer.
     #[test]
     fn each_fact_decides_as_the_table_says() {
-        let answer = Facts { named: true, removed: Some(0.6), misfit: 1.0, ..Facts::default() };
+        let answer =
+            Facts { named: true, removed: Some((0.6, 0.7)), misfit: 1.0, ..Facts::default() };
         let nothing = Facts { misfit: 1.0, ..Facts::default() };
         let of = |facts: Facts| verdict(&facts).0;
         assert_eq!(of(answer), Verdict::Explained);
@@ -191,17 +178,20 @@ mod tests {
             Facts { systematic: true, ..answer },
             Facts { much_left: true, ..answer },
             Facts { misfit: 7.8, ..answer },
-            Facts { removed: Some(-0.11), ..answer },
-            Facts { held_out: Some(-0.11), ..answer },
-            Facts { removed: Some(0.0), tied: true, ..answer },
+            Facts { removed: Some((-0.11, -0.02)), ..answer },
+            Facts { held_out: Some((-0.11, 0.0)), ..answer },
+            Facts { removed: Some((0.0, 0.0)), tied: true, ..answer },
         ] {
             assert_eq!(of(facts), Verdict::Unexplained, "{facts:?}");
         }
         // An effect that no quantity of the protocol feels is not refuted by the protocol; that it
         // does not explain it is said.
+        // An interval that contains zero refutes nothing, and shows nothing.
+        let unsure = Facts { removed: Some((-0.11, 0.05)), ..answer };
+        assert_eq!(verdict(&unsure), (Verdict::Ambiguous, Some(Statement::NotSurelySmaller)));
         let unfelt = Facts { removed: None, protocol_fails: true, ..answer };
         assert_eq!(of(unfelt), Verdict::Explained);
-        assert!(verdict(&unfelt).1.is_some_and(|reason| reason.starts_with("No quantity")));
+        assert_eq!(verdict(&unfelt).1, Some(Statement::CriteriaNotTouched));
         assert_eq!(of(nothing), Verdict::NoSignificantGap);
         for facts in [
             Facts { lacking: true, ..nothing },
@@ -212,7 +202,7 @@ mod tests {
         }
         let (within, reason) = verdict(&Facts { protocol_fails: true, ..nothing });
         assert_eq!(within, Verdict::Unexplained);
-        assert!(reason.is_some_and(|reason| reason.contains("declared tolerances allow")));
+        assert_eq!(reason, Some(Statement::CriteriaNotMet));
     }
 
     #[test]

@@ -1,10 +1,10 @@
 //! Text and numbers of the answer.
 
-use super::causes::{cause, short};
+use super::causes::{cause, title};
 use super::detectable::detectable;
 use super::rivals::{ambiguity, discriminating, neither, probabilities};
 use super::verdict::{self, Facts, Verdict};
-use crate::diagnose::checks::channels::unexplained;
+use crate::diagnose::checks::channels::{Lack, unexplained};
 use crate::diagnose::checks::further::Free;
 use crate::diagnose::checks::heterogeneity::{Heterogeneity, certain};
 use crate::diagnose::fit::fitter::Fitted;
@@ -21,24 +21,26 @@ use crate::effects::CHANNEL;
 use crate::result::diagnosis::{
     Cause, Diagnosis, Drift, Fault, HeldOut, How, Nearest, Shrink, Vetoed,
 };
-use crate::result::{FORMAT, OutlyingSection, Remark, THIS, Verdict as OfProtocol};
+use crate::result::{
+    FORMAT, OutlyingSection, RemainsOf, Remark, Statement, THIS, Verdict as OfProtocol,
+};
 use crate::simulate::Units;
+use crate::words;
 
 /// The verdict of the protocol without the effects and, where effects are named, with them.
 pub type Protocol = (OfProtocol, Option<OfProtocol>);
 
-/// The gap on held-out sections, in a sentence.
-fn on_held_out(held: &HeldOut) -> Option<String> {
-    let (before, after, removed) = (held.before?, held.after?, 100.0 * held.fraction_removed?);
-    let interval = held.low.zip(held.high).map_or(String::new(), |(low, high)| {
-        format!(" ({:.0} to {:.0} %)", 100.0 * low, 100.0 * high)
-    });
-    let changes = if after <= before { "decreases" } else { "increases" };
-    Some(format!(
-        "On the {} sections held out by the campaign ({}) the gap {changes} from {before:.3} to {after:.3}: {removed:.0} % is removed{interval}.",
-        held.sections.len(),
-        held.what
-    ))
+/// The gap on held-out sections.
+fn on_held_out(held: &HeldOut) -> Option<Statement> {
+    Some(Statement::OnHeldOutSections {
+        what: held.what.clone(),
+        sections: held.sections.len(),
+        before: held.before?,
+        after: held.after?,
+        removed: held.fraction_removed?,
+        low: held.low,
+        high: held.high,
+    })
 }
 
 /// Converts the results into the diagnosis of the report.
@@ -90,7 +92,9 @@ pub fn diagnosis(
             || ambiguous.iter().any(|rival| rival.in_ambiguity_set),
         protocol_fails: verdict::fails(protocol.0),
         removed: verdict::removed(shrink.as_ref()),
-        held_out: held_out.fraction_removed,
+        held_out: held_out
+            .fraction_removed
+            .map(|removed| (removed, held_out.high.unwrap_or(removed))),
         misfit: fit.chi2_per_feature,
     };
     let (verdict, reason) = verdict::verdict(&facts);
@@ -125,7 +129,7 @@ pub fn diagnosis(
     let trends_tested = trends.len();
     trends.retain(|trend| trend.before.p_value.min(trend.after.p_value) < TOLD);
     if verdict == Verdict::Unexplained {
-        says.extend(heterogeneous.map(|test| heterogeneous_in_words(inputs, found, test)));
+        says.extend(heterogeneous.map(|test| no_single_size(inputs, found, test)));
         says.extend(crate::diagnose::describe::trends::worth_a_word(&trends));
         says.extend(crate::diagnose::describe::invariants::worst(&invariants));
         says.extend(crate::diagnose::describe::shapes::worth_a_word(&shapes));
@@ -239,10 +243,7 @@ fn alone(found: &Found) -> Option<Remark> {
 fn vetoed(inputs: &Inputs<'_>, found: &Found) -> Vec<Vetoed> {
     let one = |refused: &Refused| {
         let of = found.candidate(&refused.fitted);
-        let title = inputs
-            .catalogue
-            .effect(&of.effect)
-            .map_or(of.effect.as_str(), |effect| effect.title.as_str());
+        let title = title(inputs, &of.effect);
         let on = if of.channels.is_empty() || of.channels.len() > 2 {
             String::new()
         } else {
@@ -296,14 +297,6 @@ fn nearest(inputs: &Inputs<'_>, found: &Found) -> Vec<Nearest> {
     told
 }
 
-/// A tolerance that explains more than a member does.
-fn in_place_of(free: &Free) -> String {
-    format!(
-        "`{}` ({}) at {:.1} declared standard deviations explains more than a named effect (evidence larger by {:.0})",
-        free.parameter, free.tolerance, free.deviations, free.evidence
-    )
-}
-
 /// The parts of a view between which the size of a member differs most: the difference and its
 /// standard error, in units of the size.
 fn drift(found: &Found, test: &Heterogeneity) -> Drift {
@@ -337,123 +330,128 @@ fn drift(found: &Found, test: &Heterogeneity) -> Drift {
     }
 }
 
-fn heterogeneous_in_words(inputs: &Inputs<'_>, found: &Found, test: &Heterogeneity) -> String {
+fn no_single_size(inputs: &Inputs<'_>, found: &Found, test: &Heterogeneity) -> Statement {
     let Drift { effect, signals, parameter, unit, covariate, from, to, change, low, high, .. } =
         drift(found, test);
-    let title = inputs.catalogue.effect(&effect).map_or(effect.as_str(), |effect| &effect.title);
-    let on = if signals.len() > 2 || signals.is_empty() {
-        String::new()
-    } else {
-        format!(" ({})", signals.join(", "))
-    };
-    let unit = if unit == "-" { String::new() } else { format!(" {unit}") };
-    format!(
-        "{title}{on}: no single size fits all data. By {covariate}, {parameter} differs by {}{unit} ({} to {}) between {from} and {to}.",
-        short(change),
-        short(low),
-        short(high)
-    )
+    let title = title(inputs, &effect).to_owned();
+    let signals = if signals.len() > 2 { Vec::new() } else { signals };
+    Statement::NoSingleSize {
+        title,
+        signals,
+        covariate,
+        parameter,
+        unit,
+        change,
+        low,
+        high,
+        from,
+        to,
+    }
 }
 
 fn says(
     inputs: &Inputs<'_>,
     found: &Found,
-    (verdict, left, reason): (Verdict, bool, Option<&str>),
+    (verdict, left, reason): (Verdict, bool, Option<Statement>),
     causes: &[Cause],
     shrink: Option<&Shrink>,
     unexplained: f64,
-) -> Vec<String> {
-    let faulty = |fault: &Fault| {
-        format!("Fault of the recording: {} (sections {}).", fault.says, fault.sections.join(", "))
+) -> Vec<Statement> {
+    let faulty = |fault: &Fault| Statement::FaultyRecording {
+        says: fault.says.clone(),
+        sections: fault.sections.clone(),
     };
-    let mut lines: Vec<String> = found.seen.faults.iter().map(faulty).collect();
+    let mut lines: Vec<Statement> = found.seen.faults.iter().map(faulty).collect();
     match verdict {
-        Verdict::NoSignificantGap => {
-            lines.push("The differences are within noise, declared tolerances and the allowed model discrepancy.".into())
-        }
-        Verdict::Explained => lines.push(format!("{}.", causes[0].says)),
-        Verdict::Ambiguous => {
-            let mut set: Vec<String> = causes.iter().filter(|cause| cause.in_ambiguity_set).map(|cause| cause.says.clone()).collect();
-            set.extend(found.answer.further.suspect().map(in_place_of));
-            lines.push(match &set[..] {
-                [alone] => format!("{alone}; the data do not distinguish it from all alternatives."),
-                all => format!("The data do not distinguish between these causes: {}.", all.join(" | ")),
-            });
-            let failing = found.answer.chosen.members.iter().zip(&found.answer.stability).filter(|(_, stability)| stability.fails());
-            lines.extend(failing.map(|(member, stability)| {
-                let effect = &found.fitted.candidates[member.candidate].effect;
-                let title = inputs.catalogue.effect(effect).map_or(effect, |effect| &effect.title);
-                let beaten = 100.0 * (1.0 - stability.first);
-                format!("{title}: when the sections are resampled, another effect has more evidence in {beaten:.0} % of the resamples.")
+        Verdict::NoSignificantGap => lines.push(Statement::WithinTheAllowed),
+        Verdict::Explained => lines.push(Statement::Explained { cause: causes[0].says.clone() }),
+        Verdict::Ambiguous => lines.extend(not_distinguished(inputs, found, causes)),
+        Verdict::Unexplained => {
+            lines.extend(remaining(inputs, found, left, reason.as_ref()));
+            lines.extend(causes.first().map(|first| Statement::PartlyExplained {
+                cause: first.says.clone(),
+                remains: unexplained,
             }));
-        }
-        _ => {
-            let mut worst: Vec<_> = found.answer.lack_after.iter().filter(|lack| lack.sigma_with_them > LACK).collect();
-            worst.sort_by(|a, b| b.sigma_with_them.total_cmp(&a.sigma_with_them));
-            let named: Vec<String> = worst
-                .iter()
-                .take(4)
-                .map(|lack| format!("{} ({})", lack.channel, if lack.kind == Kind::Level { "quasi-static" } else { "dynamic" }))
-                .collect();
-            let catalogue = &inputs.catalogue.name;
-            let further = &found.answer.further;
-            let named_any = !found.answer.chosen.members.is_empty();
-            let suspect = further.instead.as_ref().filter(|_| further.refutes());
-            lines.extend(suspect.map(|free| format!("Outside the catalogue: {}.", in_place_of(free))));
-            let near = nearest(inputs, found).into_iter().next();
-            let near = near.filter(|_| named_any && further.evidence > LEFT);
-            lines.extend(near.map(|near| {
-                format!(
-                    "Beside the named effects, a further one has an evidence of {:.0}: {}. It lacks {}.",
-                    near.evidence, near.says, near.wants
-                )
-            }));
-            let tolerance = further.tolerance.as_ref().filter(|_| suspect.is_none() && left);
-            lines.extend(tolerance.map(|free| {
-                let (parameter, tolerance) = (&free.parameter, &free.tolerance);
-                format!(
-                    "`{parameter}` ({tolerance}) would have to differ by {:.1} declared standard deviations.",
-                    free.deviations.abs()
-                )
-            }));
-            lines.push(match named.is_empty() {
-                true if suspect.is_some() => {
-                    "With the closest effects, no remaining difference exceeds the allowed one.".into()
-                }
-                true if left => {
-                    format!("No effect of the catalogue `{catalogue}` explains the gap: the remaining difference is systematic.")
-                }
-                true if reason.is_some() => reason.unwrap_or_default().into(),
-                true => {
-                    format!("Apart from that, no difference remains that an effect of the catalogue `{catalogue}` would have to explain.")
-                }
-                false => format!("No effect of the catalogue `{catalogue}` explains the gap. It remains in {}.", named.join(", ")),
-            });
-            if let Some(first) = causes.first() {
-                lines.push(format!("Partly explained: {}; {:.0} % of the excess remains.", first.says, 100.0 * unexplained));
-            }
         }
     }
-    lines.extend(
-        reason
-            .map(str::to_string)
-            .filter(|reason| !lines.contains(reason))
-            .into_iter()
-            .collect::<Vec<_>>(),
-    );
-    if let Some(shrink) = shrink {
-        let (before, after, low, high) =
-            (shrink.before, shrink.after, 100.0 * shrink.low, 100.0 * shrink.high);
-        let removed = 100.0 * shrink.fraction_removed;
-        lines.push(match removed < 0.0 {
-            false => format!(
-                "On sections excluded from the fit the gap decreases from {before:.3} to {after:.3}: {removed:.0} % is removed ({low:.0} to {high:.0} %)."
-            ),
-            true => format!(
-                "On sections excluded from the fit the gap increases from {before:.3} to {after:.3}: by {:.0} % ({:.0} to {:.0} %).",
-                -removed, -high, -low
-            ),
-        });
-    }
+    let known = |reason: &Statement| lines.contains(reason);
+    let reason = reason.filter(|reason| !known(reason));
+    lines.extend(reason);
+    lines.extend(shrink.map(|shrink| Statement::OnExcludedSections {
+        before: shrink.before,
+        after: shrink.after,
+        removed: shrink.fraction_removed,
+        low: shrink.low,
+        high: shrink.high,
+    }));
+    lines
+}
+
+/// An ambiguous answer: what could replace it, and members that other effects beat in resamples.
+fn not_distinguished(inputs: &Inputs<'_>, found: &Found, causes: &[Cause]) -> Vec<Statement> {
+    let possible = causes.iter().filter(|cause| cause.in_ambiguity_set);
+    let mut all: Vec<String> = possible.map(|cause| cause.says.clone()).collect();
+    let in_place = |free: &Free| {
+        let (parameter, tolerance) = (free.parameter.clone(), free.tolerance.clone());
+        let Free { deviations, evidence, .. } = *free;
+        words::text(&Statement::InPlaceOf { parameter, tolerance, deviations, evidence }).into()
+    };
+    all.extend(found.answer.further.suspect().map(in_place));
+    let members = found.answer.chosen.members.iter().zip(&found.answer.stability);
+    let beaten = members.filter(|(_, stability)| stability.fails()).map(|(member, stability)| {
+        let title = title(inputs, &found.candidate(member).effect).to_owned();
+        Statement::BeatenInResamples { title, share: 1.0 - stability.first }
+    });
+    [Statement::NotDistinguished { causes: all }].into_iter().chain(beaten).collect()
+}
+
+/// What an unexplained gap leaves: a tolerance in place of a member, a further candidate, a
+/// tolerance beyond its declared size, channels.
+fn remaining(
+    inputs: &Inputs<'_>,
+    found: &Found,
+    left: bool,
+    reason: Option<&Statement>,
+) -> Vec<Statement> {
+    let mut lines = Vec::new();
+    let mut worst: Vec<&Lack> =
+        found.answer.lack_after.iter().filter(|lack| lack.sigma_with_them > LACK).collect();
+    worst.sort_by(|a, b| b.sigma_with_them.total_cmp(&a.sigma_with_them));
+    let named = !found.answer.chosen.members.is_empty();
+    let further = &found.answer.further;
+    let suspect = further.instead.as_ref().filter(|_| further.refutes());
+    lines.extend(suspect.map(|free| Statement::OutsideTheCatalogue {
+        parameter: free.parameter.clone(),
+        tolerance: free.tolerance.clone(),
+        deviations: free.deviations,
+        evidence: free.evidence,
+    }));
+    let near = nearest(inputs, found).into_iter().next();
+    let near = near.filter(|_| named && further.evidence > LEFT);
+    lines.extend(near.map(|near| Statement::Beside {
+        says: near.says,
+        wants: near.wants,
+        evidence: near.evidence,
+    }));
+    let tolerance = further.tolerance.as_ref().filter(|_| suspect.is_none() && left);
+    lines.extend(tolerance.map(|free| Statement::ToleranceExceeded {
+        parameter: free.parameter.clone(),
+        tolerance: free.tolerance.clone(),
+        deviations: free.deviations.abs(),
+    }));
+    let catalogue = inputs.catalogue.name.clone();
+    lines.push(match reason {
+        _ if !worst.is_empty() => {
+            let of = |lack: &&Lack| RemainsOf {
+                channel: lack.channel.clone(),
+                dynamic: lack.kind != Kind::Level,
+            };
+            Statement::RemainsIn { catalogue, channels: worst.iter().take(4).map(of).collect() }
+        }
+        _ if suspect.is_some() => Statement::NothingExceedsTheAllowed,
+        _ if left => Statement::Systematic { catalogue },
+        Some(reason) => reason.clone(),
+        None => Statement::NothingElseRemains { catalogue },
+    });
     lines
 }

@@ -31,7 +31,7 @@ pub struct Free {
 /// Estimates of the tolerances, by parameter: the mean of the posterior under the allowed
 /// difference and the error of the responses.
 #[must_use]
-pub fn used(at: &Linearisation, chosen: &Chosen) -> Vec<UsedTolerance> {
+pub fn used(at: &Linearisation, chosen: &Chosen, far: Far<'_>) -> Vec<UsedTolerance> {
     let rest = chosen.weighed();
     let one = |column: &Sensitivity| {
         (column.shared > 0.0).then(|| UsedTolerance {
@@ -40,7 +40,16 @@ pub fn used(at: &Linearisation, chosen: &Chosen) -> Vec<UsedTolerance> {
             deviations: column.shared * dot(&at.whitener.apply(&column.column), &rest),
         })
     };
-    let mut all: Vec<UsedTolerance> = at.columns.iter().flatten().filter_map(one).collect();
+    // One that is fitted with the effects has its own size.
+    let fitted = |fit: &Fitted| {
+        let of = &at.candidates[fit.candidate];
+        let side = (fit.size - of.neutral().unwrap_or(0.0)).signum();
+        let deviations = side * far(of, fit.size);
+        let tolerance = of.tolerance.clone().unwrap_or_default();
+        UsedTolerance { tolerance, parameter: of.size.clone(), deviations }
+    };
+    let columns = at.columns.iter().flatten().filter_map(one);
+    let mut all: Vec<UsedTolerance> = columns.chain(chosen.nuisances.iter().map(fitted)).collect();
     all.sort_by(|a, b| b.deviations.abs().total_cmp(&a.deviations.abs()));
     all
 }
@@ -52,11 +61,12 @@ pub fn used(at: &Linearisation, chosen: &Chosen) -> Vec<UsedTolerance> {
 pub fn free(
     (alone, fitted): (&Linearisation, &Linearisation),
     masks: &[Mask],
-    set: &[Member],
+    chosen: &Chosen,
     bars: &Bars,
     far: Far<'_>,
 ) -> Vec<Free> {
-    let places: Vec<Option<usize>> = (0..set.len()).map(Some).collect();
+    let set = &chosen.set()[..];
+    let places: Vec<Option<usize>> = (0..chosen.members.len()).map(Some).collect();
     let mut found = match set.len() {
         1 => {
             let mut found = free_at(alone, masks, set, &places, (bars, far));
@@ -106,7 +116,9 @@ fn free_at(
         let evidence = search.evidence(&set) - answer.evidence;
         let fit = search.chosen(&set).members.pop()?;
         let other = instead.is_none_or(|member| !is_alike(&fit, &answer.members[member]));
-        (evidence > 0.0 && other).then(|| Free {
+        // Within its declared tolerance it is no gap, as for an effect that may be named.
+        let beyond = fit.size.abs() >= TOLERANCE_SD;
+        (evidence > 0.0 && beyond && other).then(|| Free {
             tolerance: columns[column].tolerance.clone(),
             parameter: columns[column].parameter.clone(),
             deviations: fit.size,

@@ -2,8 +2,8 @@
 //!
 //! The residual is regressed on the change of the member split by view, in the metric of the fit
 //! (a score test). One test for kinds of features, groups of channels, positions and sides, strata,
-//! directions and the order of the sections: it finds drifts, one-sided causes, and effects that
-//! another one imitates.
+//! directions and covariates such as the order of the sections: it finds drifts, one-sided causes,
+//! and effects that another one imitates.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
@@ -13,6 +13,7 @@ use crate::diagnose::fit::joint::metric;
 use crate::diagnose::fit::set::Chosen;
 use crate::diagnose::levels::heterogeneity::{CHANCE, SEEN};
 use crate::diagnose::linearise::whiten::dot;
+use crate::diagnose::observe::covariates::{Covariate, DIRECTION, covariates};
 use crate::diagnose::observe::layout::Kind;
 use crate::diagnose::observe::observations::Observations;
 use crate::diagnose::observe::strata::stratum_of;
@@ -93,8 +94,17 @@ pub fn views(seen: &Observations, settings: &Settings) -> Vec<View> {
         let (column, _) = settings.mirror.as_ref()?;
         fact(section, column)
     };
-    let thirds = |section: usize, _: usize| {
-        Some(["the first third", "the second third", "the last third"][section * 3 / count].into())
+    let covariates = covariates(settings, seen);
+    let thirds = |covariate: &Covariate| {
+        let [least, most] = &covariate.ends;
+        let part = |section: usize, _: usize| {
+            Some(match (3.0 * covariate.values[section]) as usize {
+                0 => format!("sections near {least}"),
+                1 => "sections between".to_string(),
+                _ => format!("sections near {most}"),
+            })
+        };
+        view(&covariate.name, &part)
     };
     let stratum_name = settings.stratum.clone().unwrap_or_default();
     let direction_name = settings.mirror.as_ref().map_or_else(String::new, |of| of.0.clone());
@@ -105,8 +115,8 @@ pub fn views(seen: &Observations, settings: &Settings) -> Vec<View> {
         view("side of the vehicle", &side),
         view(&stratum_name, &stratum),
         view(&direction_name, &direction),
-        view("order of the sections", &thirds),
     ];
+    all.extend(covariates.iter().filter(|of| of.name != DIRECTION).map(thirds));
     all.retain(|view| !view.name.is_empty());
     // Lags jump where a vehicle sways, and a section that repeats another one says nothing new.
     for (at, section) in (0..count).flat_map(|section| {

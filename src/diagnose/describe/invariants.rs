@@ -6,6 +6,7 @@ use crate::diagnose::linearise::whiten::Covariance;
 use crate::diagnose::observe::layout::Kind;
 use crate::diagnose::run::Found;
 use crate::diagnose::settings::Settings;
+use crate::result::Statement;
 use crate::result::diagnosis::Invariant;
 use crate::simulate::Units;
 
@@ -98,14 +99,15 @@ fn off(one: &Invariant) -> f64 {
 /// A sentence on the invariant with the largest deviation after the causes; nothing if none is
 /// large enough.
 #[must_use]
-pub fn worst(all: &[Invariant]) -> Option<String> {
+pub fn worst(all: &[Invariant]) -> Option<Statement> {
     let one = all.iter().max_by(|a, b| off(a).total_cmp(&off(b))).filter(|one| off(one) > WORTH)?;
-    let (after, unit, parity) = (one.after, &one.unit, &one.parity);
-    Some(format!(
-        "The sum of forces with the largest deviation is `{}`: {after:.2} {unit}, {:.1} times the allowed value, {parity}.",
-        one.name,
-        off(one)
-    ))
+    Some(Statement::LargestSum {
+        name: one.name.clone(),
+        after: one.after,
+        unit: one.unit.clone(),
+        times: off(one),
+        parity: one.parity.to_string(),
+    })
 }
 
 #[cfg(test)]

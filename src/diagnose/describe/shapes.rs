@@ -15,7 +15,9 @@ use crate::diagnose::settings::{Settings, Shape as Wanted};
 use crate::effects::{Gauss, Signals};
 use crate::metrics::percentile::{Method, percentiles};
 use crate::metrics::statistics::{Divisor, standard_deviation};
+use crate::result::Statement;
 use crate::result::diagnosis::{Ratio, Shape, Strongest};
+use crate::words;
 
 /// All groups of channels whose dynamic content is compared; none where the catalogue does not
 /// specify it.
@@ -220,7 +222,7 @@ fn shape(
         }),
         says: String::new(),
     };
-    shape.says = in_words(&shape);
+    shape.says = words::text(&statement(&shape)).into();
     shape
 }
 
@@ -291,43 +293,29 @@ fn found(mean: f64, frequency: f64, wavelength: Option<f64>) -> Strongest {
     Strongest { ratio: mean.exp(), frequency, wavelength, per_wheel_turn: None }
 }
 
-/// A sentence on the group of channels whose spectra differ most consistently.
-pub fn worth_a_word(all: &[Shape]) -> Option<String> {
+/// The group of channels whose spectra differ most consistently.
+pub fn worth_a_word(all: &[Shape]) -> Option<Statement> {
     let share = |shape: &Shape| {
         shape.alike_by_frequency.unwrap_or(0.0).max(shape.alike_by_wavelength.unwrap_or(0.0))
     };
     let known = all.iter().filter(|shape| shape.keeps_to.is_some() && share(shape) >= ALIKE);
-    known.max_by(|a, b| share(a).total_cmp(&share(b))).map(|shape| shape.says.clone())
+    known.max_by(|a, b| share(a).total_cmp(&share(b))).map(statement)
 }
 
-fn in_words(shape: &Shape) -> String {
-    let Some(strongest) = shape.strongest else {
-        return format!("The spectra of the {} show no significant difference.", shape.quantity);
+fn statement(shape: &Shape) -> Statement {
+    let quantity = shape.quantity.clone();
+    let Some(Strongest { ratio, frequency, wavelength, per_wheel_turn }) = shape.strongest else {
+        return Statement::SpectraAlike { quantity };
     };
-    let more = format!("{:.2} times the simulated amplitude", strongest.ratio);
-    let turns = strongest
-        .per_wheel_turn
-        .and_then(|turns| TURNS.into_iter().find(|whole| (turns / whole - 1.0).abs() < WHOLE));
-    match (shape.keeps_to.as_deref(), strongest.wavelength) {
-        (Some("frequency"), _) => format!(
-            "The difference of the spectra of the {} scales with frequency, as a mode of the vehicle does; it is largest at {:.1} Hz, {more}.",
-            shape.quantity, strongest.frequency
-        ),
+    match (shape.keeps_to.as_deref(), wavelength) {
+        (Some("frequency"), _) => Statement::SpectraByFrequency { quantity, frequency, ratio },
         (Some(_), Some(wavelength)) => {
-            let turns = match turns {
-                Some(1.0) => ", one turn of a wheel".to_string(),
-                Some(turns) => format!(", {turns:.0} waves per wheel revolution"),
-                None => String::new(),
-            };
-            let quantity = &shape.quantity;
-            format!(
-                "The difference of the spectra of the {quantity} scales with wavelength, as track and wheel irregularities do; it is largest at {wavelength:.1} m{turns}, {more}."
-            )
+            let whole =
+                |turns: f64| TURNS.into_iter().find(|whole| (turns / whole - 1.0).abs() < WHOLE);
+            let turns = per_wheel_turn.and_then(whole);
+            Statement::SpectraByWavelength { quantity, wavelength, ratio, turns }
         }
-        _ => format!(
-            "The spectra of the {} differ most at {:.1} Hz, {more}.",
-            shape.quantity, strongest.frequency
-        ),
+        _ => Statement::SpectraDiffer { quantity, frequency, ratio },
     }
 }
 

@@ -10,24 +10,13 @@ use crate::diagnose::levels::{
     trends::{CERTAIN, TOGETHER},
 };
 use crate::diagnose::linearise::whiten::Covariance;
+use crate::diagnose::observe::covariates::{Covariate, covariates};
 use crate::diagnose::observe::layout::Kind;
-use crate::diagnose::observe::observations::Observations;
 use crate::diagnose::run::Found;
-use crate::diagnose::settings::{INVERSE, Position, Settings};
+use crate::diagnose::settings::{Position, Settings};
+use crate::result::Statement;
 use crate::result::diagnosis::{Slope, Trend};
 use crate::simulate::Units;
-
-/// A property that varies between sections.
-#[derive(Debug)]
-pub struct Covariate {
-    pub name: String,
-    /// By section, scaled to 0 at its minimum and 1 at its maximum.
-    pub values: Vec<f64>,
-    /// The table's text for the minimum and the maximum.
-    pub ends: [String; 2],
-    /// That for the minimum without its unit, where the maximum has one.
-    from: String,
-}
 
 /// All trends in increasing order of p-value, and the correlated covariates, in words.
 #[must_use]
@@ -110,24 +99,25 @@ pub fn certain(trends: &[Trend]) -> bool {
     trends.iter().any(|trend| trend.after.p_value * tested < CERTAIN)
 }
 
-/// A sentence on the trend with the smallest p-value with the causes added, if it is significant.
+/// The trend with the smallest p-value with the causes added, if it is significant.
 #[must_use]
-pub fn worth_a_word(trends: &[Trend]) -> Option<String> {
+pub fn worth_a_word(trends: &[Trend]) -> Option<Statement> {
     let trend = trends
         .iter()
         .filter(|trend| trend.after.significant)
-        .min_by(|a, b| a.after.p_value.total_cmp(&b.after.p_value))?;
-    Some(format!(
-        "The remaining difference of the {} ({}, {}) depends on {}: it changes by {} from {} to {} (correlation {:.2}).",
-        trend.quantity,
-        trend.position,
-        trend.wavelength_or_band,
-        trend.covariate,
-        change(trend, trend.after.change),
-        trend.from,
-        trend.to,
-        trend.after.correlation
-    ))
+        .min_by(|a, b| a.after.p_value.total_cmp(&b.after.p_value))?
+        .clone();
+    Some(Statement::DependsOn {
+        quantity: trend.quantity,
+        position: trend.position,
+        band: trend.wavelength_or_band,
+        covariate: trend.covariate,
+        change: trend.after.change,
+        unit: trend.unit,
+        from: trend.from,
+        to: trend.to,
+        correlation: trend.after.correlation,
+    })
 }
 
 /// A change in the unit of its trend.
@@ -173,68 +163,6 @@ fn slopes(
         })
     };
     covariates.iter().map(of).collect()
-}
-
-/// Covariates: the order of the sections, the direction of the curve, and the columns that the
-/// catalogue lists.
-pub fn covariates(settings: &Settings, seen: &Observations) -> Vec<Covariate> {
-    let sections = || seen.sections.iter().map(|observed| &observed.section);
-    let order = (0..seen.sections.len()).map(|at| at as f64).collect();
-    let mut all = vec![scaled("the order of the sections", order, &|at, _| {
-        Some(seen.sections[at].section.name().to_string())
-    })];
-    if let Some((column, _)) = &settings.mirror {
-        let text = |at: usize, _| seen.sections[at].section.fact(column).map(str::to_owned);
-        all.push(scaled(
-            "the direction of the curve",
-            sections().map(|section| settings.side(section)).collect(),
-            &text,
-        ));
-    }
-    for name in &settings.covariates {
-        let column = name.strip_prefix(INVERSE).unwrap_or(name);
-        let inverse = column.len() < name.len();
-        // A section without a radius is straight: 1 / radius = 0.
-        let number = |number: Option<f64>| {
-            if inverse { Some(number.map_or(0.0, |number| 1.0 / number)) } else { number }
-        };
-        let text = |at: usize, with_unit: bool| {
-            let section = &seen.sections[at].section;
-            let says = if with_unit {
-                section.says(column).unwrap_or_else(|| format!("no {column}"))
-            } else {
-                section.says_without_unit(column)?
-            };
-            // A number includes its column name; for a reciprocal the original value is given.
-            Some(says.strip_prefix(&format!("{name} ")).unwrap_or(&says).to_string())
-        };
-        if let Some(values) =
-            sections().map(|section| number(section.number(column))).collect::<Option<Vec<f64>>>()
-        {
-            all.push(scaled(name, values, &text));
-        }
-    }
-    all.into_iter().flatten().collect()
-}
-
-/// A covariate scaled to its range; nothing if it is constant.
-fn scaled(
-    name: &str,
-    values: Vec<f64>,
-    text: &dyn Fn(usize, bool) -> Option<String>,
-) -> Option<Covariate> {
-    let by_value = |a: &usize, b: &usize| values[*a].total_cmp(&values[*b]);
-    let (least, most) = ((0..values.len()).min_by(by_value)?, (0..values.len()).max_by(by_value)?);
-    let range = values[most] - values[least];
-    let scale = |value: &f64| (value - values[least]) / range;
-    let ends = [least, most].map(|at| text(at, true).unwrap_or_default());
-    let numbers = text(least, false).filter(|_| text(most, false).is_some());
-    (range > 0.0 && range.is_finite()).then(|| Covariate {
-        name: name.into(),
-        values: values.iter().map(scale).collect(),
-        from: numbers.unwrap_or_else(|| ends[0].clone()),
-        ends,
-    })
 }
 
 /// Pairs of correlated covariates, in words.

@@ -29,6 +29,8 @@ impl Bars {
 #[derive(Clone, Debug)]
 pub struct Chosen {
     pub members: Vec<Fitted>,
+    /// Members within their declared tolerance: fitted with the others, not named.
+    pub nuisances: Vec<Fitted>,
     /// The whitened residual.
     pub rest: Vec<f64>,
     /// Evidence of the whole set.
@@ -48,13 +50,24 @@ impl Chosen {
     /// The empty set.
     #[must_use]
     pub fn none(z: &[f64]) -> Self {
-        Self { members: Vec::new(), rest: z.to_vec(), evidence: 0.0, metric: Arc::default() }
+        Self {
+            members: Vec::new(),
+            nuisances: Vec::new(),
+            rest: z.to_vec(),
+            evidence: 0.0,
+            metric: Arc::default(),
+        }
     }
 
-    /// The members, by candidate and mask.
+    /// All that is fitted, the members first.
+    pub fn all(&self) -> impl Iterator<Item = &Fitted> {
+        self.members.iter().chain(&self.nuisances)
+    }
+
+    /// The same, by candidate and mask.
     #[must_use]
     pub fn set(&self) -> Vec<Member> {
-        self.members.iter().map(|member| (member.candidate, member.mask)).collect()
+        self.all().map(|member| (member.candidate, member.mask)).collect()
     }
 
     /// The residual weighted with the error of the responses, for the fit of a further effect.
@@ -63,10 +76,10 @@ impl Chosen {
         self.metric.apply(&self.metric.apply(&self.rest))
     }
 
-    /// The whitened difference less the changes of all members but one.
+    /// The whitened difference less the changes of all but one member.
     #[must_use]
     pub fn left_by_others(&self, z: &[f64], at: usize) -> Vec<f64> {
-        let others = self.members.iter().enumerate().filter(|(other, _)| *other != at);
+        let others = self.all().enumerate().filter(|(other, _)| *other != at);
         others.fold(z.to_vec(), |rest, (_, other)| less(&rest, &other.whitened))
     }
 }

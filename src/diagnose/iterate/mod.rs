@@ -75,7 +75,7 @@ impl Iterate<'_> {
         };
         let mut near = near;
         for _ in 0..ROUNDS {
-            let next = self.linearise.at(&alone, &now.chosen.members, &near, runs);
+            let next = self.linearise.at(&alone, &all(&now.chosen), &near, runs);
             let Some(mut next) = next else {
                 now.still = true;
                 break;
@@ -84,13 +84,13 @@ impl Iterate<'_> {
             let start = now.chosen.set();
             let (chosen, further) = self.search(&mut next, (&start, &barred), &bars, runs);
             let gone = self.gone(&next, &now.chosen, &chosen, &bars);
-            now.still = gone.is_empty() && next.is_at(&chosen.members, STILL);
+            now.still = gone.is_empty() && stand_still(&now.chosen.members, &chosen.members);
             now.refused.extend(gone);
             (now.fitted, now.chosen, near) = (Arc::new(next), chosen, further);
             if now.still {
                 break;
             }
-            if now.chosen.members.is_empty() {
+            if now.chosen.set().is_empty() {
                 let refused = self::barred(&now.refused);
                 let search = Search::new(&nominal, &alone.z, &bars, self.far);
                 now.chosen = search.chosen(&search.run(&[], &refused));
@@ -120,7 +120,7 @@ impl Iterate<'_> {
             for (at, size) in wanted {
                 workshop.refine(&mut alone.candidates[at], size, runs);
             }
-            let polished = self.linearise.polish(&mut alone.candidates, &chosen.members, runs);
+            let polished = self.linearise.polish(&mut alone.candidates, &all(&chosen), runs);
             if !refined && !polished {
                 return First { alone: Arc::new(alone), known, bars, chosen, near };
             }
@@ -147,7 +147,7 @@ impl Iterate<'_> {
             drop(search);
             drop(fitter);
             let last = round == POLISHED;
-            if last || !self.linearise.polish(&mut at.candidates, &chosen.members, runs) {
+            if last || !self.linearise.polish(&mut at.candidates, &all(&chosen), runs) {
                 return (chosen, near);
             }
         }
@@ -177,15 +177,13 @@ impl Iterate<'_> {
         after: &Chosen,
         bars: &Bars,
     ) -> Vec<Refused> {
-        let kept = |member: &&Fitted| {
-            after.members.iter().all(|other| other.candidate != member.candidate)
-        };
+        let kept = |member: &&Fitted| after.all().all(|other| other.candidate != member.candidate);
         let gone: Vec<&Fitted> = before.members.iter().filter(kept).collect();
         if gone.is_empty() {
             return Vec::new();
         }
         let masks = self.linearise.masks.to_vec();
-        let fitter = Fitter::of(&at.whitener, &at.candidates, masks, &before.members);
+        let fitter = Fitter::of(&at.whitener, &at.candidates, masks, &all(before));
         let search = Search::new(&fitter, &at.z, bars, self.far);
         let set = before.set();
         let reason = |member: &Fitted| {
@@ -194,9 +192,6 @@ impl Iterate<'_> {
                 Some(Fault::Evidence(evidence, needed)) => {
                     format!("it has an evidence of {evidence:.0}; {needed:.0} are required")
                 }
-                Some(Fault::Tolerance(away)) => format!(
-                    "its value is only {away:.1} declared standard deviations away; {TOLERANCE_SD:.1} are required"
-                ),
                 Some(Fault::Range) => "it requires an implausible value".into(),
                 Some(Fault::Confinement) | None => "another effect has more evidence".into(),
             }
@@ -213,6 +208,21 @@ impl Iterate<'_> {
     }
 }
 
+/// Whether the same effects are named with about the same sizes: within a tenth, or within a
+/// standard error.
+fn stand_still(before: &[Fitted], after: &[Fitted]) -> bool {
+    let alike = |a: &Fitted, b: &Fitted| {
+        let within = (STILL * a.size.abs().max(b.size.abs())).max(b.error());
+        (a.candidate, a.mask) == (b.candidate, b.mask) && (a.size - b.size).abs() <= within
+    };
+    before.len() == after.len() && after.iter().all(|b| before.iter().any(|a| alike(a, b)))
+}
+
+/// All that is fitted.
+fn all(chosen: &Chosen) -> Vec<Fitted> {
+    chosen.all().cloned().collect()
+}
+
 fn barred(refused: &[Refused]) -> Vec<usize> {
     refused.iter().map(|refused| refused.fitted.candidate).collect()
 }
@@ -223,7 +233,7 @@ fn promising(fitter: &Fitter<'_>, z: &[f64], chosen: &Chosen) -> Vec<(usize, f64
     let candidate = |fit: &Fitted| -> &Candidate { &fitter.candidates[fit.candidate] };
     let pending = |fit: &&Fitted| candidate(fit).pending_towards(fit.size);
     let towards = |fit: &Fitted| (fit.candidate, fit.size);
-    let mut found: Vec<(usize, f64)> = chosen.members.iter().filter(pending).map(towards).collect();
+    let mut found: Vec<(usize, f64)> = chosen.all().filter(pending).map(towards).collect();
     for rest in [z.to_vec(), chosen.weighed()] {
         let fits = fitter.all(&rest);
         let best = fits.iter().map(|fit| fit.evidence).fold(0.0, f64::max);

@@ -22,8 +22,6 @@ use crate::simulate::Plan;
 /// The linearisation at a point.
 #[derive(Debug)]
 pub struct Linearisation {
-    /// The effects that are present: candidate, mask and size.
-    pub members: Vec<(usize, usize, f64)>,
     pub candidates: Vec<Candidate>,
     /// Sensitivities to the tolerances.
     pub columns: Vec<Option<Sensitivity>>,
@@ -46,18 +44,7 @@ impl Linearisation {
     ) -> Self {
         let whitener = covariance.whitener();
         let z = whitener.apply(&difference);
-        Self { members: Vec::new(), candidates, columns, difference, covariance, whitener, z }
-    }
-
-    /// Whether it is at these effects with about these sizes.
-    #[must_use]
-    pub fn is_at(&self, members: &[Fitted], alike: f64) -> bool {
-        let near = |((candidate, mask, size), member): (&(usize, usize, f64), &Fitted)| {
-            (*candidate, *mask) == (member.candidate, member.mask)
-                && (size - member.size).abs() <= alike * size.abs().max(member.size.abs())
-        };
-        self.members.len() == members.len()
-            && members.iter().all(|member| self.members.iter().any(|known| near((known, member))))
+        Self { candidates, columns, difference, covariance, whitener, z }
     }
 }
 
@@ -143,10 +130,7 @@ impl Linearise<'_> {
         expect(&sensitivities, &mut difference);
         let mut covariance = self.covariance(&sensitivities);
         self.leave_out_jumps(&mut covariance, &candidates, &simulated);
-        let mut there = Linearisation::new(candidates, columns, covariance, difference);
-        there.members =
-            members.iter().map(|member| (member.candidate, member.mask, member.size)).collect();
-        Some(there)
+        Some(Linearisation::new(candidates, columns, covariance, difference))
     }
 
     /// Simulates the fitted sizes where no close size exists; returns whether there was any.

@@ -1,9 +1,10 @@
 //! The model error of a simulated response: a relative error of the change that an effect causes.
 //!
 //! The simulated change `d` of the features with an effect is not exact. Its error is `e_g d` on
-//! each group `g` of features, with independent relative errors `e_g`. Features of a kind have one
-//! error in common over the whole campaign; each group of channels has a further one, and each
-//! group of channels in each stratum. An operation on the signals has no such error.
+//! each group `g` of features, with independent relative errors `e_g`. Features of a kind
+//! (quasi-static values, bands, gains and lags) have one error in common over the whole campaign;
+//! each group of channels has a further one, and each group of channels in each stratum. An operation
+//! on the signals has no such error in the fit.
 
 use crate::diagnose::observe::layout::Kind;
 use crate::diagnose::observe::observations::Observations;
@@ -41,26 +42,30 @@ impl ResponseError {
         groups.dedup();
         let Response { levels, others, groups: further, common: of_all } = settings.response;
         let mut parts = Vec::new();
-        for (level, common) in [(true, levels), (false, others)] {
-            let features = |group: Option<usize>| -> Vec<usize> {
-                let inside = |channel: usize| {
-                    group.is_none_or(|group| seen.layout.channels[channel].group == group)
-                };
-                let kept = seen.features.iter().enumerate();
-                kept.filter(|(_, of)| (of.kind == Kind::Level) == level && inside(of.channel))
-                    .map(|(at, _)| at)
-                    .collect()
+        let of = |kept: &dyn Fn(Kind) -> bool, group: Option<usize>| -> Vec<usize> {
+            let inside = |channel: usize| {
+                group.is_none_or(|group| seen.layout.channels[channel].group == group)
             };
-            parts.push(Part { features: features(None), sections: all.clone(), sd: common });
-            for group in &groups {
-                let features = features(Some(*group));
-                parts.push(Part { features: features.clone(), sections: all.clone(), sd: further });
-                parts.extend(strata.iter().map(|of| Part {
-                    features: features.clone(),
-                    sections: of.clone(),
-                    sd: further,
-                }));
-            }
+            let features = seen.features.iter().enumerate();
+            let features = features.filter(|(_, of)| kept(of.kind) && inside(of.channel));
+            features.map(|(at, _)| at).collect()
+        };
+        let level = |kind| kind == Kind::Level;
+        let band = |kind| matches!(kind, Kind::Band(_));
+        let every = |features, sd| Part { features, sections: all.clone(), sd };
+        parts.push(every(of(&level, None), levels));
+        parts.push(every(of(&band, None), others));
+        parts.push(every(of(&|kind| !level(kind) && !band(kind), None), others));
+        for (is_level, group) in
+            [true, false].into_iter().flat_map(|is| groups.iter().map(move |group| (is, *group)))
+        {
+            let features = of(&|kind| level(kind) == is_level, Some(group));
+            parts.push(every(features.clone(), further));
+            parts.extend(strata.iter().map(|of| Part {
+                features: features.clone(),
+                sections: of.clone(),
+                sd: further,
+            }));
         }
         parts.retain(|part| !part.features.is_empty() && !part.sections.is_empty());
         Self { parts, each: others, common: of_all }

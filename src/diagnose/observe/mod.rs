@@ -3,6 +3,7 @@
 pub mod bench;
 pub mod cache;
 pub(super) mod columns;
+pub mod covariates;
 pub(super) mod faults;
 pub mod increments;
 pub mod layout;

@@ -79,7 +79,10 @@ impl Draws<'_> {
                 .filter(|fit| fit.evidence >= bars.least(&fitter.candidates[fit.candidate]))
                 .collect();
             let search = Search::new(fitter, &z, bars, self.far);
-            strong.iter().any(|fit| search.fault(&[(fit.candidate, fit.mask)], 0).is_none())
+            let named = |fit: &Fitted| {
+                search.fault(&[(fit.candidate, fit.mask)], 0).is_none() && search.is_named(fit)
+            };
+            strong.iter().any(named)
         };
         (0..NOTHING_HIDDEN).into_par_iter().filter(named).count() as f64 / NOTHING_HIDDEN as f64
     }

@@ -12,7 +12,7 @@ use crate::diagnose::fit::fitter::{Fitted, Fitter, Member};
 use crate::diagnose::fit::joint::{Joint, fit};
 use crate::diagnose::fit::set::{Bars, Chosen, plausible};
 use crate::diagnose::levels::search::{
-    BETTER, CONFINED, CONFINED_SHARE, FIRSTS, MOST, SECONDS, TOLERANCE_SD, TRIED, WORTH,
+    BETTER, CONFINED, CONFINED_SHARE, FIRSTS, MOST, SECONDS, TOGETHER, TOLERANCE_SD, TRIED, WORTH,
 };
 use crate::diagnose::linearise::candidate::Candidate;
 
@@ -34,8 +34,6 @@ pub struct Search<'a> {
 pub enum Fault {
     /// Its evidence, and the required one.
     Evidence(f64, f64),
-    /// Its distance from the declared value in declared standard deviations.
-    Tolerance(f64),
     /// Its size is outside the range of the catalogue.
     Range,
     /// All sections show it as well as those that it is confined to.
@@ -86,12 +84,21 @@ impl<'a> Search<'a> {
                 ..own.clone()
             })
         };
+        let all = (0..set.len()).filter_map(member);
+        let (members, nuisances) = all.partition(|member| self.is_named(member));
         Chosen {
-            members: (0..set.len()).filter_map(member).collect(),
+            members,
+            nuisances,
             rest: joint.rest.clone(),
             evidence: joint.evidence,
             metric: joint.metric.clone(),
         }
+    }
+
+    /// Whether a member is named: beyond its declared tolerance, if it has one.
+    #[must_use]
+    pub fn is_named(&self, member: &Fitted) -> bool {
+        (self.far)(&self.fitter.candidates[member.candidate], member.size) >= TOLERANCE_SD
     }
 
     /// The candidates with the most evidence beside a set, each under its best mask, most first.
@@ -156,12 +163,9 @@ impl<'a> Search<'a> {
         let member = joint.members.iter().find(|own| (own.candidate, own.mask) == set[at])?;
         let of = &self.fitter.candidates[member.candidate];
         let evidence = joint.evidence - self.evidence(&without(set, at));
-        let (needed, away) = (self.bars.least(of), (self.far)(of, member.size));
+        let needed = self.bars.least(of);
         if evidence < needed {
             return Some(Fault::Evidence(evidence, needed));
-        }
-        if away < TOLERANCE_SD {
-            return Some(Fault::Tolerance(away));
         }
         if !plausible(of, member.size) {
             return Some(Fault::Range);
@@ -175,7 +179,8 @@ impl<'a> Search<'a> {
     }
 
     fn is_sound(&self, set: &[Member]) -> bool {
-        (0..set.len()).all(|at| self.fault(set, at).is_none())
+        self.chosen(set).members.len() <= MOST
+            && (0..set.len()).all(|at| self.fault(set, at).is_none())
     }
 
     /// The set with the most evidence that steps from `start` reach. A member of `start` that does
@@ -187,10 +192,9 @@ impl<'a> Search<'a> {
             set = next;
         }
         // The order of an answer: the most evidence first.
-        let chosen = self.chosen(&set);
-        let mut members = chosen.members;
-        members.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
-        members.iter().map(|member| (member.candidate, member.mask)).collect()
+        let mut chosen = self.chosen(&set);
+        chosen.members.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+        chosen.set()
     }
 
     /// The set without members that do not meet the requirements, the one with the least evidence
@@ -216,7 +220,7 @@ impl<'a> Search<'a> {
     fn step(&self, set: &[Member], barred: &[usize]) -> Option<Vec<Member>> {
         let mut proposed: Vec<Vec<Member>> = Vec::new();
         let members = |fits: Vec<Fitted>| fits.into_iter().map(|fit| (fit.candidate, fit.mask));
-        if set.len() < MOST {
+        if set.len() < TOGETHER {
             let firsts: Vec<Member> = members(self.further(set, barred, TRIED)).collect();
             proposed.extend(firsts.iter().map(|member| with(set, *member)));
             // The best single effect need not be a member of the best pair.
@@ -363,7 +367,9 @@ mod tests {
         assert_eq!(search.run(&[(2, 0)], &[1]), [(0, 0)]);
         // A size that is a declared tolerance is not named.
         let near = Search::new(&fitter, &z, &bars, &|_, _| 3.0);
-        assert_eq!(near.fault(&[(0, 0)], 0), Some(Fault::Tolerance(3.0)));
-        assert!(near.run(&[], &[]).is_empty());
+        let fitted = near.chosen(&[(0, 0)]);
+        assert!(near.fault(&[(0, 0)], 0).is_none());
+        assert!(fitted.members.is_empty() && fitted.nuisances.len() == 1);
+        assert!(near.chosen(&near.run(&[], &[])).members.is_empty());
     }
 }

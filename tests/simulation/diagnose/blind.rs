@@ -13,7 +13,9 @@ use crate::write;
 fn campaigns_with_withheld_truths_are_diagnosed_and_scored() {
     let (campaigns, out) = (folder().join("withheld"), folder().join("withheld-scores"));
     let set = SETS.iter().find(|set| set.name == "test").unwrap();
-    (set.cases)().iter().for_each(|case| write::campaign(&campaigns, set, case).unwrap());
+    let seed = set.seed.unwrap();
+    let written = |case| write::campaign(&campaigns, (set, seed), case).unwrap();
+    (set.cases)(seed).iter().for_each(written);
     let resume = folder().join("resume");
     let paths = [&campaigns, &out, &resume].map(|path| path.to_str().unwrap().to_string());
     let ran =
