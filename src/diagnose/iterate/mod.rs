@@ -73,9 +73,14 @@ impl Iterate<'_> {
             calibration,
             still: false,
         };
-        let mut near = near;
+        let (mut near, mut before): (Vec<Fitted>, Vec<Member>) = (near, Vec::new());
         for _ in 0..ROUNDS {
-            let next = self.linearise.at(&alone, &all(&now.chosen), &near, runs);
+            let mut set = now.chosen.set();
+            set.sort_unstable();
+            let again = (set == before).then(|| now.fitted.clone());
+            before = set;
+            let from = (&*alone, again.as_deref());
+            let next = self.linearise.at(from, &all(&now.chosen), &near, runs);
             let Some(mut next) = next else {
                 now.still = true;
                 break;
@@ -84,10 +89,15 @@ impl Iterate<'_> {
             let start = now.chosen.set();
             let (chosen, further) = self.search(&mut next, (&start, &barred), &bars, runs);
             let gone = self.gone(&next, &now.chosen, &chosen, &bars);
-            now.still = gone.is_empty() && stand_still(&now.chosen.members, &chosen.members);
+            let stands = |errors| {
+                gone.is_empty() && stand_still(&now.chosen.members, &chosen.members, errors)
+            };
+            // What moves by less than its error still moves, and is followed while rounds are left.
+            let (exactly, within_errors) = (stands(0.0), stands(1.0));
+            now.still = within_errors;
             now.refused.extend(gone);
             (now.fitted, now.chosen, near) = (Arc::new(next), chosen, further);
-            if now.still {
+            if exactly {
                 break;
             }
             if now.chosen.set().is_empty() {
@@ -208,11 +218,11 @@ impl Iterate<'_> {
     }
 }
 
-/// Whether the same effects are named with about the same sizes: within a tenth, or within a
-/// standard error.
-fn stand_still(before: &[Fitted], after: &[Fitted]) -> bool {
+/// Whether the same effects are named with about the same sizes: within a tenth, or within so many
+/// standard errors.
+fn stand_still(before: &[Fitted], after: &[Fitted], errors: f64) -> bool {
     let alike = |a: &Fitted, b: &Fitted| {
-        let within = (STILL * a.size.abs().max(b.size.abs())).max(b.error());
+        let within = (STILL * a.size.abs().max(b.size.abs())).max(errors * b.error());
         (a.candidate, a.mask) == (b.candidate, b.mask) && (a.size - b.size).abs() <= within
     };
     before.len() == after.len() && after.iter().all(|b| before.iter().any(|a| alike(a, b)))

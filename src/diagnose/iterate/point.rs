@@ -71,12 +71,13 @@ impl Linearise<'_> {
         Linearisation::new(candidates, columns, self.covariance(&sensitivities), difference)
     }
 
-    /// At the members of a fit, with `further` candidates simulated beside them as well. Nothing
-    /// where no member changes the response to others, or where a simulation fails.
+    /// At the members of a fit, with `further` candidates simulated beside them as well. `near` is
+    /// at the same members with other sizes: it has the tolerances already. Nothing where no member
+    /// changes the response to others, or where a simulation fails.
     #[must_use]
     pub fn at(
         &self,
-        nominal: &Linearisation,
+        (nominal, near): (&Linearisation, Option<&Linearisation>),
         members: &[Fitted],
         further: &[Fitted],
         runs: &mut Runs,
@@ -124,7 +125,10 @@ impl Linearise<'_> {
         for fit in beside.filter(|fit| members.iter().all(|one| one.candidate != fit.candidate)) {
             self.place(&mut candidates[fit.candidate], fit.size, Some(all.clone()), runs);
         }
-        let columns = self.tolerances(&all.on(bench), &all.base, (nominal, members), runs);
+        let columns = match near {
+            Some(near) => near.columns.clone(),
+            None => self.tolerances(&all.on(bench), &all.base, (nominal, members), runs),
+        };
         let mut difference = less(&self.workshop.ground.whole, &interaction);
         let sensitivities: Vec<Sensitivity> = columns.iter().flatten().cloned().collect();
         expect(&sensitivities, &mut difference);

@@ -529,7 +529,7 @@ fn a_gain_that_is_not_the_same_all_along_is_told() {
         found.answer.heterogeneity
     };
     assert!(heterogeneous(&tests(0.0)).is_none());
-    let all = tests(0.2);
+    let all = tests(0.3);
     let told = heterogeneous(&all).expect("no single size");
     assert_eq!(told.view, "the order of the sections");
     // As a share of the change of the gain, which is negative.
