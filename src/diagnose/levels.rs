@@ -306,8 +306,9 @@ pub mod iterate {
     /// Largest number of rounds, and of fits within one with the fitted sizes simulated.
     pub const ROUNDS: usize = 4;
     pub const POLISHED: usize = 3;
-    /// Relative difference of sizes up to which the answer stands still, where that is more than their
-    /// standard error.
+    /// Number of members that are rejected at their own point after which the rounds end.
+    pub const REFUSED: usize = 6;
+    /// Relative difference of sizes up to which the answer stands still.
     pub const STILL: f64 = 0.1;
 }
 

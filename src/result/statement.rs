@@ -52,6 +52,12 @@ pub enum Statement {
         tolerance: String,
         deviations: f64,
     },
+    /// The fit used more of a tolerance than an effect may have without being named.
+    ToleranceUsed {
+        parameter: String,
+        tolerance: String,
+        deviations: f64,
+    },
     NothingExceedsTheAllowed,
     Systematic {
         catalogue: String,
@@ -71,7 +77,6 @@ pub enum Statement {
     // Reasons of the verdict.
     CriteriaNotMet,
     LargerThanAllowed,
-    NotSmallerOnExcluded,
     NotSmallerOnHeldOut,
     NotSurelySmaller,
     StillMoving,

@@ -48,10 +48,10 @@ pub struct Facts {
     pub tied: bool,
     /// Whether the criteria of the protocol are not met without effects.
     pub protocol_fails: bool,
-    /// The gap on sections excluded from the fit that the effects remove, as a share, and the upper
-    /// end of its interval; nothing where no quantity of the protocol feels them.
-    pub removed: Option<(f64, f64)>,
-    /// The same on the sections that the campaign holds out.
+    /// The gap on sections excluded from the fit that the effects remove, as a share; nothing where
+    /// no quantity of the protocol feels them.
+    pub removed: Option<f64>,
+    /// The same on the sections that the campaign holds out, and the upper end of its interval.
     pub held_out: Option<(f64, f64)>,
     /// What is left, in units of what is allowed.
     pub misfit: f64,
@@ -69,7 +69,7 @@ const fn rule(applies: fn(&Facts) -> bool, verdict: Verdict, reason: Option<Stat
 }
 
 /// In this order.
-static RULES: [Rule; 12] = [
+static RULES: [Rule; 11] = [
     rule(|of| !of.named && (of.faulty || of.lacking || of.systematic), Verdict::Unexplained, None),
     rule(
         |of| !of.named && of.protocol_fails,
@@ -80,18 +80,16 @@ static RULES: [Rule; 12] = [
     rule(|of| of.systematic || of.much_left, Verdict::Unexplained, None),
     rule(|of| of.misfit > MISFIT, Verdict::Unexplained, Some(Statement::LargerThanAllowed)),
     rule(
-        |of| of.removed.is_some_and(|(_, high)| high <= 0.0),
-        Verdict::Unexplained,
-        Some(Statement::NotSmallerOnExcluded),
-    ),
-    rule(
         |of| of.held_out.is_some_and(|(_, high)| high <= 0.0),
         Verdict::Unexplained,
         Some(Statement::NotSmallerOnHeldOut),
     ),
     rule(|of| of.moving, Verdict::Ambiguous, Some(Statement::StillMoving)),
     rule(
-        |of| [of.removed, of.held_out].iter().flatten().any(|(removed, _)| *removed <= 0.0),
+        |of| {
+            of.removed.is_some_and(|removed| removed <= 0.0)
+                || of.held_out.is_some_and(|(removed, _)| removed <= 0.0)
+        },
         Verdict::Ambiguous,
         Some(Statement::NotSurelySmaller),
     ),
@@ -117,14 +115,14 @@ pub fn fails(protocol: OfProtocol) -> bool {
     protocol == OfProtocol::NotValidated
 }
 
-/// The share of the gap that the effects remove on sections excluded from the fit, and the upper
-/// end of its interval: of all quantities or of those that the effects change, whichever is larger.
-/// Nothing where they change none.
+/// The share of the gap that the effects remove on sections excluded from the fit: of all
+/// quantities or of those that the effects change, whichever is larger. Nothing where they change
+/// none.
 #[must_use]
-pub fn removed(shrink: Option<&Shrink>) -> Option<(f64, f64)> {
+pub fn removed(shrink: Option<&Shrink>) -> Option<f64> {
     let shrink = shrink?;
     let touched = shrink.touched.as_ref()?;
-    Some((shrink.fraction_removed.max(touched.fraction_removed), shrink.high.max(touched.high)))
+    Some(shrink.fraction_removed.max(touched.fraction_removed))
 }
 
 /// How well the answer fits: chi-squared of all that is left, with the model error of the simulated
@@ -168,8 +166,7 @@ mod tests {
     /// Each fact alone, from an answer that explains everything and from no answer.
     #[test]
     fn each_fact_decides_as_the_table_says() {
-        let answer =
-            Facts { named: true, removed: Some((0.6, 0.7)), misfit: 1.0, ..Facts::default() };
+        let answer = Facts { named: true, removed: Some(0.6), misfit: 1.0, ..Facts::default() };
         let nothing = Facts { misfit: 1.0, ..Facts::default() };
         let of = |facts: Facts| verdict(&facts).0;
         assert_eq!(of(answer), Verdict::Explained);
@@ -178,17 +175,21 @@ mod tests {
             Facts { systematic: true, ..answer },
             Facts { much_left: true, ..answer },
             Facts { misfit: 7.8, ..answer },
-            Facts { removed: Some((-0.11, -0.02)), ..answer },
             Facts { held_out: Some((-0.11, 0.0)), ..answer },
-            Facts { removed: Some((0.0, 0.0)), tied: true, ..answer },
+            Facts { held_out: Some((-0.11, 0.0)), tied: true, ..answer },
         ] {
             assert_eq!(of(facts), Verdict::Unexplained, "{facts:?}");
         }
         // An effect that no quantity of the protocol feels is not refuted by the protocol; that it
         // does not explain it is said.
-        // An interval that contains zero refutes nothing, and shows nothing.
-        let unsure = Facts { removed: Some((-0.11, 0.05)), ..answer };
-        assert_eq!(verdict(&unsure), (Verdict::Ambiguous, Some(Statement::NotSurelySmaller)));
+        // Excluded sections refute nothing: they are other parts of the same records. Held-out ones
+        // do, unless the interval contains zero.
+        for unsure in [
+            Facts { removed: Some(-0.11), ..answer },
+            Facts { held_out: Some((-0.11, 0.05)), ..answer },
+        ] {
+            assert_eq!(verdict(&unsure), (Verdict::Ambiguous, Some(Statement::NotSurelySmaller)));
+        }
         let unfelt = Facts { removed: None, protocol_fails: true, ..answer };
         assert_eq!(of(unfelt), Verdict::Explained);
         assert_eq!(verdict(&unfelt).1, Some(Statement::CriteriaNotTouched));

@@ -19,7 +19,7 @@ use crate::diagnose::observe::layout::Kind;
 use crate::diagnose::run::{Found, chi, deviations};
 use crate::effects::CHANNEL;
 use crate::result::diagnosis::{
-    Cause, Diagnosis, Drift, Fault, HeldOut, How, Nearest, Shrink, Vetoed,
+    Cause, Diagnosis, Drift, Fault, HeldOut, How, Nearest, Shrink, UsedTolerance, Vetoed,
 };
 use crate::result::{
     FORMAT, OutlyingSection, RemainsOf, Remark, Statement, THIS, Verdict as OfProtocol,
@@ -126,6 +126,12 @@ pub fn diagnosis(
     let mut says =
         says(inputs, found, (verdict, left, reason), &causes, shrink.as_ref(), unexplained_share);
     says.extend(on_held_out(&held_out));
+    let beyond = |used: &&UsedTolerance| used.deviations.abs() >= TOLERANCE_SD;
+    says.extend(found.answer.used.iter().filter(beyond).map(|used| Statement::ToleranceUsed {
+        parameter: used.parameter.clone(),
+        tolerance: used.tolerance.clone(),
+        deviations: used.deviations,
+    }));
     let trends_tested = trends.len();
     trends.retain(|trend| trend.before.p_value.min(trend.after.p_value) < TOLD);
     if verdict == Verdict::Unexplained {

@@ -9,7 +9,7 @@ use crate::diagnose::fit::fitter::{Fitted, Fitter, Known, Member};
 use crate::diagnose::fit::set::{Bars, Chosen, Refused, plausible};
 use crate::diagnose::iterate::point::{Linearisation, Linearise};
 use crate::diagnose::levels::iterate::{
-    FLOOR, FLOOR_EXACT, NEAR, NEAREST, POLISHED, ROUNDS, STILL, WORTH,
+    FLOOR, FLOOR_EXACT, NEAR, NEAREST, POLISHED, REFUSED, ROUNDS, STILL, WORTH,
 };
 use crate::diagnose::levels::search::{TOLERANCE_SD, TRIED};
 use crate::diagnose::linearise::candidate::Candidate;
@@ -74,7 +74,9 @@ impl Iterate<'_> {
             still: false,
         };
         let (mut near, mut before): (Vec<Fitted>, Vec<Member>) = (near, Vec::new());
-        for _ in 0..ROUNDS {
+        // A round that rejects a member is not counted: the member does not come back.
+        let mut rounds = 0;
+        while rounds < ROUNDS && now.refused.len() < REFUSED {
             let mut set = now.chosen.set();
             set.sort_unstable();
             let again = (set == before).then(|| now.fitted.clone());
@@ -95,6 +97,7 @@ impl Iterate<'_> {
             // What moves by less than its error still moves, and is followed while rounds are left.
             let (exactly, within_errors) = (stands(0.0), stands(1.0));
             now.still = within_errors;
+            rounds += usize::from(gone.is_empty());
             now.refused.extend(gone);
             (now.fitted, now.chosen, near) = (Arc::new(next), chosen, further);
             if exactly {

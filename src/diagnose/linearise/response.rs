@@ -2,9 +2,9 @@
 //!
 //! The simulated change `d` of the features with an effect is not exact. Its error is `e_g d` on
 //! each group `g` of features, with independent relative errors `e_g`. Features of a kind
-//! (quasi-static values, bands, gains and lags) have one error in common over the whole campaign;
-//! each group of channels has a further one, and each group of channels in each stratum. An operation
-//! on the signals has no such error in the fit.
+//! (quasi-static values, dynamic content, gains and lags) have one error in common over the whole
+//! campaign; each group of channels has a further one, and each group of channels in each stratum.
+//! An operation on the signals has no such error in the fit.
 
 use crate::diagnose::observe::layout::Kind;
 use crate::diagnose::observe::observations::Observations;
@@ -51,7 +51,7 @@ impl ResponseError {
             features.map(|(at, _)| at).collect()
         };
         let level = |kind| kind == Kind::Level;
-        let band = |kind| matches!(kind, Kind::Band(_));
+        let band = |kind| matches!(kind, Kind::Band(_) | Kind::Increment(_));
         let every = |features, sd| Part { features, sections: all.clone(), sd };
         parts.push(every(of(&level, None), levels));
         parts.push(every(of(&band, None), others));
