@@ -1,6 +1,6 @@
-//! Hidden effects by campaign. Four sets of fixed cases with separate seeds: `derive` for the choice
-//! of thresholds, `score` for the scores, `doubt` for the scores of cases without a cause in the
-//! catalogue, `test` for the tests; and `fresh`, whose cases and sizes are drawn from the seed.
+//! Hidden effects by campaign. Four sets of fixed cases with separate seeds: `derive` for the
+//! choice of thresholds, `score` for the scores, `doubt` for the scores of cases without a cause in
+//! the catalogue, `test` for the tests; and `fresh`, whose cases and sizes are drawn from the seed.
 
 use fishplate::effects::Gauss;
 use fishplate::model::{TrackTable, Vehicle};

@@ -78,7 +78,7 @@ pub enum Statement {
     CriteriaNotMet,
     LargerThanAllowed,
     NotSmallerOnHeldOut,
-    NotSurelySmaller,
+    NotSmaller,
     StillMoving,
     CriteriaNotTouched,
 

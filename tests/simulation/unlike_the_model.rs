@@ -1,6 +1,6 @@
-//! Machines whose records are not quite the model's: another integrator, another friction, noise. A
-//! servo drive with and without its Coulomb friction in the catalogue, and an oscillator whose spring
-//! hardens.
+//! Machines whose records are not quite the model's: another integrator, another friction, noise.
+//! A servo drive with and without its Coulomb friction in the catalogue, and an oscillator whose
+//! spring hardens.
 
 #![allow(clippy::cast_precision_loss)]
 
@@ -72,7 +72,8 @@ const DRIVE: &str = "
     return {'force': force}
 ";
 
-/// 10 kg, 40 N s/m, 4000 N/m and 600000 N/m^3, by the explicit midpoint rule with 4000 steps a second.
+/// 10 kg, 40 N s/m, 4000 N/m and 600000 N/m^3, by the explicit midpoint rule with 4000 steps a
+/// second.
 fn oscillator(folder: &Path, run: usize) -> [PathBuf; 2] {
     let noise = &mut Noise(run as u64 + 5);
     let force = |t: f64| -> f64 {

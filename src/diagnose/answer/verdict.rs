@@ -80,7 +80,7 @@ static RULES: [Rule; 11] = [
     rule(|of| of.systematic || of.much_left, Verdict::Unexplained, None),
     rule(|of| of.misfit > MISFIT, Verdict::Unexplained, Some(Statement::LargerThanAllowed)),
     rule(
-        |of| of.held_out.is_some_and(|(_, high)| high <= 0.0),
+        |of| of.held_out.is_some_and(|(_, high)| high < 0.0),
         Verdict::Unexplained,
         Some(Statement::NotSmallerOnHeldOut),
     ),
@@ -91,7 +91,7 @@ static RULES: [Rule; 11] = [
                 || of.held_out.is_some_and(|(removed, _)| removed <= 0.0)
         },
         Verdict::Ambiguous,
-        Some(Statement::NotSurelySmaller),
+        Some(Statement::NotSmaller),
     ),
     rule(|of| of.tied, Verdict::Ambiguous, None),
     rule(
@@ -175,8 +175,8 @@ mod tests {
             Facts { systematic: true, ..answer },
             Facts { much_left: true, ..answer },
             Facts { misfit: 7.8, ..answer },
-            Facts { held_out: Some((-0.11, 0.0)), ..answer },
-            Facts { held_out: Some((-0.11, 0.0)), tied: true, ..answer },
+            Facts { held_out: Some((-0.11, -0.01)), ..answer },
+            Facts { held_out: Some((-0.11, -0.01)), tied: true, ..answer },
         ] {
             assert_eq!(of(facts), Verdict::Unexplained, "{facts:?}");
         }
@@ -188,7 +188,7 @@ mod tests {
             Facts { removed: Some(-0.11), ..answer },
             Facts { held_out: Some((-0.11, 0.05)), ..answer },
         ] {
-            assert_eq!(verdict(&unsure), (Verdict::Ambiguous, Some(Statement::NotSurelySmaller)));
+            assert_eq!(verdict(&unsure), (Verdict::Ambiguous, Some(Statement::NotSmaller)));
         }
         let unfelt = Facts { removed: None, protocol_fails: true, ..answer };
         assert_eq!(of(unfelt), Verdict::Explained);

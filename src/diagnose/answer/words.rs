@@ -94,6 +94,7 @@ pub fn diagnosis(
         removed: verdict::removed(shrink.as_ref()),
         held_out: held_out
             .fraction_removed
+            .filter(|_| held_out.before != held_out.after)
             .map(|removed| (removed, held_out.high.unwrap_or(removed))),
         misfit: fit.chi2_per_feature,
     };
@@ -130,7 +131,7 @@ pub fn diagnosis(
     says.extend(found.answer.used.iter().filter(beyond).map(|used| Statement::ToleranceUsed {
         parameter: used.parameter.clone(),
         tolerance: used.tolerance.clone(),
-        deviations: used.deviations,
+        deviations: used.deviations.abs(),
     }));
     let trends_tested = trends.len();
     trends.retain(|trend| trend.before.p_value.min(trend.after.p_value) < TOLD);
@@ -280,7 +281,7 @@ fn nearest(inputs: &Inputs<'_>, found: &Found) -> Vec<Nearest> {
                 )
             }
             () if !plausible(of, fit.size) => "a value inside the range of the catalogue".into(),
-            () if found.answer.chosen.members.len() == MOST => {
+            () if found.answer.chosen.members.len() >= MOST => {
                 format!("an answer with fewer effects: at most {MOST} are named")
             }
             () => "more evidence of all effects together".into(),
@@ -370,8 +371,12 @@ fn says(
     let mut lines: Vec<Statement> = found.seen.faults.iter().map(faulty).collect();
     match verdict {
         Verdict::NoSignificantGap => lines.push(Statement::WithinTheAllowed),
-        Verdict::Explained => lines.push(Statement::Explained { cause: causes[0].says.clone() }),
-        Verdict::Ambiguous => lines.extend(not_distinguished(inputs, found, causes)),
+        Verdict::Ambiguous if reason.is_none() => {
+            lines.extend(not_distinguished(inputs, found, causes));
+        }
+        Verdict::Explained | Verdict::Ambiguous => {
+            lines.push(Statement::Explained { cause: causes[0].says.clone() });
+        }
         Verdict::Unexplained => {
             lines.extend(remaining(inputs, found, left, reason.as_ref()));
             lines.extend(causes.first().map(|first| Statement::PartlyExplained {

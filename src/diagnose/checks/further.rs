@@ -67,7 +67,7 @@ pub fn free(
 ) -> Vec<Free> {
     let set = &chosen.set()[..];
     let places: Vec<Option<usize>> = (0..chosen.members.len()).map(Some).collect();
-    let mut found = match set.len() {
+    let mut found = match chosen.members.len() {
         1 => {
             let mut found = free_at(alone, masks, set, &places, (bars, far));
             found.extend(free_at(fitted, masks, set, &[None], (bars, far)));
@@ -115,7 +115,9 @@ fn free_at(
         let set = with(&others, (first + column, 0));
         let evidence = search.evidence(&set) - answer.evidence;
         let fit = search.chosen(&set).members.pop()?;
-        let other = instead.is_none_or(|member| !is_alike(&fit, &answer.members[member]));
+        // At another linearisation a member may be within its tolerance.
+        let own = |member: usize| answer.all().find(|own| own.candidate == member);
+        let other = instead.and_then(own).is_none_or(|member| !is_alike(&fit, member));
         // Within its declared tolerance it is no gap, as for an effect that may be named.
         let beyond = fit.size.abs() >= TOLERANCE_SD;
         (evidence > 0.0 && beyond && other).then(|| Free {

@@ -138,8 +138,7 @@ pub fn heterogeneity(fitter: &Fitter<'_>, chosen: &Chosen, views: &[View]) -> Ve
     // An exact operation has an error too: the records that it acts on are not those of the
     // vehicle.
     let columns: Vec<DMatrix<f64>> = chosen
-        .members
-        .iter()
+        .all()
         .map(|member| {
             let at = (member.candidate, member.mask);
             fitter.error_of_any(at, (member.segment, member.share))

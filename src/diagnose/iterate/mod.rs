@@ -94,8 +94,11 @@ impl Iterate<'_> {
             let stands = |errors| {
                 gone.is_empty() && stand_still(&now.chosen.members, &chosen.members, errors)
             };
-            // What moves by less than its error still moves, and is followed while rounds are left.
-            let (exactly, within_errors) = (stands(0.0), stands(1.0));
+            // What moves by less than its error still moves, and is followed while rounds are left,
+            // as are members that are not named.
+            let mut set = chosen.set();
+            set.sort_unstable();
+            let (exactly, within_errors) = (stands(0.0) && set == before, stands(1.0));
             now.still = within_errors;
             rounds += usize::from(gone.is_empty());
             now.refused.extend(gone);
@@ -108,6 +111,7 @@ impl Iterate<'_> {
                 let search = Search::new(&nominal, &alone.z, &bars, self.far);
                 now.chosen = search.chosen(&search.run(&[], &refused));
                 now.fitted = alone.clone();
+                before.clear();
             }
         }
         now

@@ -1,11 +1,12 @@
 //! The linearisation at a point: difference, allowed difference and candidates, simulated together
-//! with the effects found so far. A vehicle with low damping is sensitive to a stiffness that has no
-//! influence otherwise, and a body on its bump stops answers to cant and track in another way.
+//! with the effects found so far. A vehicle with low damping is sensitive to a stiffness that has
+//! no influence otherwise, and a body on its bump stops answers to cant and track in another way.
 
 use std::sync::Arc;
 
 use crate::diagnose::fit::fitter::Fitted;
 use crate::diagnose::levels::covariance::NOTHING;
+use crate::diagnose::levels::further::SAME;
 use crate::diagnose::levels::point::{ALIKE, APART, JUMP, MATTERS};
 use crate::diagnose::linearise::candidate::{Beside, Candidate, Node};
 use crate::diagnose::linearise::covariance::{Sensitivity, covariance, expect};
@@ -220,12 +221,21 @@ impl Linearise<'_> {
             .map(|(again, nominal)| again.or(nominal.clone()))
             .collect();
         // A tolerance whose size a member of all sections gives is fixed, except for its scatter
-        // between sections.
+        // between sections: of several parameters with one name, those with the same change.
+        let z = |change: &[f64]| others.apply(change);
+        let long = |z: &[f64]| dot(z, z).sqrt();
         for member in members.iter().filter(|member| member.mask == 0) {
             let given = nominal.candidates[member.candidate].tolerance.as_ref();
-            let own = columns.iter_mut().flatten();
-            own.filter(|column| Some(&column.tolerance) == given)
-                .for_each(|column| column.shared = 0.0);
+            let change = z(&member.change(&nominal.candidates, self.masks));
+            let of_name = |column: &&mut Sensitivity| Some(&column.tolerance) == given;
+            let several = columns.iter_mut().flatten().filter(of_name).count() > 1;
+            for column in columns.iter_mut().flatten().filter(of_name) {
+                let own = z(&column.column);
+                let alike = dot(&own, &change).abs() > SAME * long(&own) * long(&change);
+                if alike || !several {
+                    column.shared = 0.0;
+                }
+            }
         }
         columns
     }

@@ -206,7 +206,16 @@ impl<'a> Search<'a> {
             let evidence = |at: usize| self.evidence(&set) - self.evidence(&without(&set, at));
             let worst = faults.min_by(|a, b| evidence(a.0).total_cmp(&evidence(b.0)));
             match worst {
-                None => return set,
+                None => {
+                    let named = self.chosen(&set).members;
+                    let least = named.iter().min_by(|a, b| a.evidence.total_cmp(&b.evidence));
+                    match least.filter(|_| named.len() > MOST) {
+                        None => return set,
+                        Some(least) => {
+                            set.retain(|member| *member != (least.candidate, least.mask))
+                        }
+                    }
+                }
                 Some((at, Fault::Confinement)) => set[at].1 = 0,
                 Some((at, _)) => {
                     set.remove(at);
