@@ -50,8 +50,9 @@ fn main() {
         std::env::args().skip(1).filter(|one| !one.starts_with("--")).map(PathBuf::from).collect();
     if campaigns.is_empty() {
         let set = SETS.iter().find(|set| set.name == "derive").unwrap();
-        for case in (set.cases)().iter().take(2) {
-            write::campaign(scratch.path(), set, case).unwrap();
+        let seed = set.seed.unwrap();
+        for case in (set.cases)(seed).iter().take(2) {
+            write::campaign(scratch.path(), (set, seed), case).unwrap();
             campaigns.push(scratch.path().join(format!("derive-{:02}", case.number)));
         }
     }

@@ -94,7 +94,7 @@ pub fn figures(found: &Diagnosis) -> Vec<(String, String)> {
 
 fn answer(found: &Diagnosis) -> Chapter {
     let mut blocks = vec![Block::list(
-        found.says.iter().map(|line| number::raised(&String::from(words::text(line)))),
+        found.says.iter().map(|line| number::raised(String::from(words::text(line)))),
     )];
     if let Some(measure) = &found.discriminating_measurement {
         blocks.push(Block::text(format!("The causes can be distinguished by: {measure}.")));
