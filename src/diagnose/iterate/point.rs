@@ -225,8 +225,12 @@ impl Linearise<'_> {
         let z = |change: &[f64]| others.apply(change);
         let long = |z: &[f64]| dot(z, z).sqrt();
         for member in members.iter().filter(|member| member.mask == 0) {
-            let given = nominal.candidates[member.candidate].tolerance.as_ref();
-            let change = z(&member.change(&nominal.candidates, self.masks));
+            let of = &nominal.candidates[member.candidate];
+            let given = of.tolerance.as_ref();
+            let far = |node: &&Node| (node.size - member.size).abs();
+            let changed = of.nodes.iter().filter(|node| !node.change.is_empty());
+            let nearest = changed.min_by(|a, b| far(a).total_cmp(&far(b)));
+            let change = nearest.map_or_else(Vec::new, |node| z(&node.change));
             let of_name = |column: &&mut Sensitivity| Some(&column.tolerance) == given;
             let several = columns.iter_mut().flatten().filter(of_name).count() > 1;
             for column in columns.iter_mut().flatten().filter(of_name) {
