@@ -11,6 +11,10 @@ pub enum FormPart {
     Number(&'static str, Dimension),
     /// A time or a length; its dimension decides the axis that is used.
     Extent(&'static str),
+    /// The same, or the word `sample`.
+    ExtentOrSample(&'static str),
+    /// A reducer that a sliding window has.
+    Reducer(&'static str),
     /// A frequency: in time, or in cycles per length after resampling over a length.
     Frequency(&'static str),
     /// A frequency or 0 Hz.
@@ -68,6 +72,10 @@ impl Form {
                 FormPart::Word(word) => (*word).to_string(),
                 FormPart::Number(name, dimension) => format!("<{name}: {}>", dimension.in_words()),
                 FormPart::Extent(name) => format!("<{name}: a length or a time>"),
+                FormPart::ExtentOrSample(name) => {
+                    format!("<{name}: a length, a time or the word sample>")
+                }
+                FormPart::Reducer(name) => format!("<{name}: a reducer>"),
                 FormPart::Frequency(name) => format!("<{name}: a frequency>"),
                 FormPart::FrequencyOrZero(name) => format!("<{name}: a frequency or 0 Hz>"),
                 FormPart::Signal(name) => format!("<{name}: a signal>"),

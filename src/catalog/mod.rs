@@ -14,7 +14,9 @@ mod two_signals;
 pub use entries::{Entry, entries};
 pub use forms::{Choice, Form, FormPart, NumberOption};
 pub use functions::{FUNCTIONS, Function, SIGNAL_FUNCTIONS, Signature};
-pub use reducers::{REDUCERS, Reducer, ReducerEntry, STATISTICS, Statistic, StatisticEntry};
+pub use reducers::{
+    InWindow, REDUCERS, Reducer, ReducerEntry, STATISTICS, Statistic, StatisticEntry,
+};
 pub use steps::{STEPS, StepEntry, StepKind};
 pub use two_signals::{Asked, Best, METRICS, Metric, MetricEntry, NOT_CHECKED, Pair};
 

@@ -1,9 +1,12 @@
 //! Values of one signal in one section, and statistics over all section x signal pairs.
 
+use std::fmt;
+
 use crate::metrics::cluster::{mean_interval, standard_deviation_interval};
 use crate::metrics::percentile::{Method, percentile};
 use crate::metrics::sampling::{self, Traits};
 use crate::metrics::statistics::{self, Divisor};
+use crate::metrics::window;
 use crate::units::Dimension;
 
 /// Confidence level of the intervals printed with statistics.
@@ -16,7 +19,6 @@ pub enum Reducer {
     Named(&'static ReducerEntry),
 }
 
-#[derive(Debug)]
 pub struct ReducerEntry {
     pub name: &'static str,
     pub about: &'static str,
@@ -24,6 +26,24 @@ pub struct ReducerEntry {
     pub gives: fn(Dimension, Dimension) -> Dimension,
     /// From the axis and the samples, both in SI; `None` where it is not defined.
     pub run: fn(&[f64], &Traits<'_>) -> Option<f64>,
+    /// How it is computed in a sliding window, where it makes sense there.
+    pub window: Option<InWindow>,
+}
+
+/// How a reducer is computed in a sliding window.
+#[derive(Clone, Copy, Debug)]
+pub enum InWindow {
+    /// By a way that is faster than to read every window.
+    Fast(window::Kind<'static>),
+    /// By itself.
+    Itself,
+}
+
+/// By its name: two runs print the same.
+impl fmt::Debug for ReducerEntry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name)
+    }
 }
 
 impl PartialEq for ReducerEntry {
@@ -37,7 +57,12 @@ const fn same(
     about: &'static str,
     run: fn(&[f64], &Traits<'_>) -> Option<f64>,
 ) -> ReducerEntry {
-    ReducerEntry { name, about, gives: |signal, _| signal, run }
+    ReducerEntry { name, about, gives: |signal, _| signal, run, window: None }
+}
+
+/// A reducer that a sliding window has, too.
+const fn windowed(window: InWindow, entry: ReducerEntry) -> ReducerEntry {
+    ReducerEntry { window: Some(window), ..entry }
 }
 
 macro_rules! share {
@@ -47,22 +72,55 @@ macro_rules! share {
             about: $about,
             gives: |_, _| Dimension::ONE,
             run: |_, x| ($run)(x),
+            window: None,
         }
     };
 }
 
+use InWindow::{Fast, Itself};
+use window::Kind;
+
 /// Reducers by name; percentiles are written as `p99.85`.
 pub const REDUCERS: &[ReducerEntry] = &[
-    same("median", "The 50 % value.", |_, x| statistics::median(x)),
-    same("mean", "Arithmetic mean of the samples.", |_, x| statistics::mean(x)),
-    same("rms", "Root mean square; the mean is not removed.", |_, x| statistics::rms(x)),
-    same("std", "Standard deviation of the samples (n-1).", |_, x| {
-        statistics::standard_deviation(x, Divisor::Sample)
-    }),
-    same("minimum", "Smallest sample.", |_, x| statistics::minimum(x)),
-    same("maximum", "Largest sample.", |_, x| statistics::maximum(x)),
-    same("peak", "Largest magnitude.", |_, x| statistics::peak_magnitude(x)),
-    same("range", "Largest minus smallest sample.", |_, x| statistics::range(x)),
+    windowed(Itself, same("median", "The 50 % value.", |_, x| statistics::median(x))),
+    windowed(
+        Fast(Kind::Mean),
+        same("mean", "Arithmetic mean of the samples.", |_, x| statistics::mean(x)),
+    ),
+    windowed(
+        Fast(Kind::Rms),
+        same("rms", "Root mean square; the mean is not removed.", |_, x| statistics::rms(x)),
+    ),
+    windowed(
+        Itself,
+        same(
+            "rms_about_trend",
+            "Root mean square about the regression line over the axis.",
+            |axis, x| statistics::rms_about_trend(axis, x),
+        ),
+    ),
+    windowed(
+        Itself,
+        same("std", "Standard deviation of the samples (n-1).", |_, x| {
+            statistics::standard_deviation(x, Divisor::Sample)
+        }),
+    ),
+    windowed(
+        Fast(Kind::Extremes(|low, _| low)),
+        same("minimum", "Smallest sample.", |_, x| statistics::minimum(x)),
+    ),
+    windowed(
+        Fast(Kind::Extremes(|_, high| high)),
+        same("maximum", "Largest sample.", |_, x| statistics::maximum(x)),
+    ),
+    windowed(
+        Fast(Kind::Extremes(|low, high| high.abs().max(low.abs()))),
+        same("peak", "Largest magnitude.", |_, x| statistics::peak_magnitude(x)),
+    ),
+    windowed(
+        Fast(Kind::Extremes(|low, high| high - low)),
+        same("range", "Largest minus smallest sample.", |_, x| statistics::range(x)),
+    ),
     share!(
         "held",
         "Share of the samples in the longest run of equal values.",
@@ -117,6 +175,7 @@ pub const REDUCERS: &[ReducerEntry] = &[
             let step = (axis.last()? - axis.first()?) / (axis.len() - 1) as f64;
             Some(step / frequency).filter(|length| length.is_finite())
         },
+        window: None,
     },
     same("first", "First sample of the section.", |_, x| x.first().copied()),
     same("last", "Last sample of the section.", |_, x| x.last().copied()),
@@ -125,12 +184,21 @@ pub const REDUCERS: &[ReducerEntry] = &[
         about: "Slope of the regression line over the axis.",
         gives: |signal, axis| signal / axis,
         run: |axis, x| statistics::regression(axis, x).map(|line| line.slope),
+        window: Some(Itself),
     },
 ];
 
 impl Reducer {
     pub fn named(name: &str) -> Option<Self> {
         REDUCERS.iter().find(|entry| entry.name == name).map(Self::Named)
+    }
+
+    /// How it is computed in a sliding window; `None` where it makes no sense there.
+    pub fn in_window(self) -> Option<InWindow> {
+        match self {
+            Self::Percentile(_) => Some(Itself),
+            Self::Named(entry) => entry.window,
+        }
     }
 
     pub fn gives(self, signal: Dimension, axis: Dimension) -> Dimension {

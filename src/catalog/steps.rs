@@ -1,6 +1,8 @@
 //! Steps of a filter chain.
 
-use super::forms::FormPart::{self, Extent, Frequency, FrequencyOrZero, Number, Word};
+use super::forms::FormPart::{
+    self, Extent, ExtentOrSample, Frequency, FrequencyOrZero, Number, Reducer, Word,
+};
 use super::forms::{Choice, Form, NumberOption};
 use crate::units::Dimension;
 
@@ -11,8 +13,7 @@ pub enum StepKind {
     BandPass,
     BandStop,
     TransferFunction,
-    SlidingMean,
-    SlidingRms,
+    Sliding,
     Resample,
     RemoveMean,
     Magnitude,
@@ -43,7 +44,7 @@ const WINDOW_CHOICES: &[Choice] = &[
     Choice {
         name: "ends",
         words: &["samples", "integral"],
-        about: "Mean of the samples a <= x < a + window, or the integral of the linearly interpolated signal over the window, divided by its width.",
+        about: "For a sliding mean or rms: of the samples a <= x < a + window, or the integral of the linearly interpolated signal over the window, divided by its width.",
     },
     Choice {
         name: "short sections",
@@ -85,10 +86,6 @@ const fn transfer(head: &'static [FormPart], about: &'static str) -> StepEntry {
 const ABOVE_ZERO: FormPart = Frequency("frequency");
 const FROM_ZERO: FormPart = FrequencyOrZero("frequency");
 const QUALITY: FormPart = Number("quality", Dimension::ONE);
-
-const fn window(kind: StepKind, head: &'static [FormPart], about: &'static str) -> StepEntry {
-    StepEntry { kind, form: Form { head, numbers: &[], choices: WINDOW_CHOICES }, about }
-}
 
 const fn bare(kind: StepKind, head: &'static [FormPart], about: &'static str) -> StepEntry {
     StepEntry { kind, form: Form { head, numbers: &[], choices: &[] }, about }
@@ -143,16 +140,21 @@ pub const STEPS: &[StepEntry] = &[
         poles![Word("zeros"), ABOVE_ZERO, Word("quality"), QUALITY],
         "Two poles and two zeros: (1 + s/(quality z) + (s/z)²)/P.",
     ),
-    window(
-        StepKind::SlidingMean,
-        &[Word("sliding"), Word("mean"), Extent("window"), Word("every"), Extent("step")],
-        "Mean in a sliding window, from the start of the section; all windows are inside the section.",
-    ),
-    window(
-        StepKind::SlidingRms,
-        &[Word("sliding"), Word("rms"), Extent("window"), Word("every"), Extent("step")],
-        "Root mean square in a sliding window, from the start of the section; all windows are inside the section.",
-    ),
+    StepEntry {
+        kind: StepKind::Sliding,
+        form: Form {
+            head: &[
+                Word("sliding"),
+                Reducer("value"),
+                Extent("window"),
+                Word("every"),
+                ExtentOrSample("step"),
+            ],
+            numbers: &[],
+            choices: WINDOW_CHOICES,
+        },
+        about: "A value of each window that slides along the section, from its start; all windows are inside the section. The value is `mean`, `rms`, `rms_about_trend`, `std`, `minimum`, `maximum`, `peak`, `range`, `median`, `p<number>` or `slope`.",
+    },
     bare(
         StepKind::Resample,
         &[Word("resample"), Word("every"), Extent("step")],

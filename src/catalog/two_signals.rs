@@ -141,6 +141,8 @@ impl MetricEntry {
             | FormPart::Extent(name)
             | FormPart::Frequency(name)
             | FormPart::FrequencyOrZero(name)
+            | FormPart::ExtentOrSample(name)
+            | FormPart::Reducer(name)
             | FormPart::Signal(name) => Some(format!("<{name}>")),
         });
         let slots: Vec<String> = slots

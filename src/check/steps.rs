@@ -3,9 +3,9 @@
 use super::evaluate::is_whole;
 use super::prelude::*;
 use super::wordings::Filled;
-use crate::catalog::{FormPart, STEPS, StepEntry, StepKind};
+use crate::catalog::{FormPart, InWindow, STEPS, StepEntry, StepKind};
 use crate::metrics::filter::{Band, Cutoff, Phase};
-use crate::metrics::window::Ends;
+use crate::metrics::window::{self, Ends};
 use crate::syntax::phrase::{Item, Step as WrittenStep};
 
 /// Largest number of steps of a chain, including those of the filters that it names. Each is a pass
@@ -196,6 +196,10 @@ impl Checker<'_> {
         for part in entry.form.head {
             match part {
                 FormPart::Word(word) => words.push((*word).to_string()),
+                FormPart::Reducer(_) => words.push(filled.reducer?.in_words()),
+                FormPart::ExtentOrSample(_) if next == filled.numbers.len() => {
+                    words.push("sample".into());
+                }
                 _ => {
                     let (value, dimension, _) = filled.numbers.get(next)?;
                     words.push(show_number(*value, *dimension));
@@ -241,23 +245,34 @@ impl Checker<'_> {
                 words.push(format!(", gain {}, {first}, {second}", show_number(gain, unit)));
                 self.transfer(entry, filled, span)?
             }
-            StepKind::SlidingMean | StepKind::SlidingRms => {
-                let (_, a, _) = filled.numbers.first()?;
-                let (_, b, place) = filled.numbers.get(1)?;
-                self.suits("step", a == b, &a.in_words(), *b, place)?;
-                words.push(format!(", {first}"));
+            StepKind::Sliding => {
+                let reducer = filled.reducer?;
+                let (_, axis, _) = filled.numbers.first()?;
+                factor = reducer.gives(Dimension::ONE, *axis);
+                if let Some(step) = filled.numbers.get(1) {
+                    self.suits("step", *axis == step.1, &axis.in_words(), step.1, &step.2)?;
+                    self.not_too_fine(step)?;
+                }
+                let of_sums = matches!(
+                    reducer.in_window(),
+                    Some(InWindow::Fast(window::Kind::Mean | window::Kind::Rms))
+                );
+                if of_sums {
+                    words.push(format!(", {first}"));
+                } else if first == "integral" {
+                    let says = "only a sliding mean or rms can be an `integral`";
+                    return self.refuse(error("unknown-option", says, span));
+                }
                 let short_sections = second == "short-sections";
                 if short_sections {
                     words.push(format!(", {second}"));
                 }
-                self.not_too_fine(filled.numbers.get(1)?)?;
-                let ends = if first == "integral" { Ends::Integral } else { Ends::Samples };
                 StepSpec::Window {
-                    rms: entry.kind == StepKind::SlidingRms,
+                    reducer,
                     width: number(0),
-                    step: number(1),
-                    over_time: *a == Dimension::TIME,
-                    ends,
+                    step: filled.numbers.get(1).map(|(step, ..)| *step),
+                    over_time: *axis == Dimension::TIME,
+                    ends: if first == "integral" { Ends::Integral } else { Ends::Samples },
                     short_sections,
                 }
             }

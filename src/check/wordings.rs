@@ -1,7 +1,7 @@
 //! Checks wordings of the registry, of steps and metrics: their words, slots and options.
 
 use super::prelude::*;
-use crate::catalog::{Form, FormPart, METRICS};
+use crate::catalog::{Form, FormPart, METRICS, REDUCERS, Reducer};
 use crate::problem::nearest;
 use crate::syntax::phrase::{Item, Step as Written};
 
@@ -13,6 +13,8 @@ const SMALLEST_EXTENT: f64 = 1e-6;
 #[derive(Debug, Default)]
 pub struct Filled {
     pub numbers: Vec<(f64, Dimension, Span)>,
+    /// The value of a sliding window.
+    pub reducer: Option<Reducer>,
     /// In the order of the wording; `None` where an option is not stated and has no default.
     pub options: Vec<Option<(f64, Dimension)>>,
     pub choices: Vec<&'static str>,
@@ -110,13 +112,20 @@ impl Checker<'_> {
                 continue;
             }
             let place = item.place();
+            if let FormPart::Reducer(_) = part {
+                filled.reducer = Some(self.windowed(item)?);
+                continue;
+            }
+            if let (FormPart::ExtentOrSample(_), Some("sample")) = (part, item.node.word()) {
+                continue;
+            }
             let (value, found) = self.constant_phrase(&item_phrase(item))?;
             match part {
-                FormPart::Word(_) | FormPart::Signal(_) => {}
+                FormPart::Word(_) | FormPart::Signal(_) | FormPart::Reducer(_) => {}
                 FormPart::Number(name, dimension) => {
                     self.suits(name, found == *dimension, &dimension.in_words(), found, &place)?;
                 }
-                FormPart::Extent(name) => {
+                FormPart::Extent(name) | FormPart::ExtentOrSample(name) => {
                     let extent = matches!(found, Dimension::LENGTH | Dimension::TIME);
                     self.suits(name, extent, "a length or a time", found, &place)?;
                     self.positive(name, value, &place)?;
@@ -143,6 +152,30 @@ impl Checker<'_> {
             self.option(form, part, span, &mut filled)?;
         }
         Some(filled)
+    }
+
+    /// The value of a sliding window, also by a choice.
+    fn windowed(&mut self, item: &At<Item>) -> Option<Reducer> {
+        let phrase = match item.node.word() {
+            Some(word) => {
+                let word = self.choice_word(word, &item.place())?;
+                let percent = word.strip_prefix('p').and_then(|percent| percent.parse().ok());
+                item.with(percent.map_or(Node::Path(word), Node::Percentile))
+            }
+            None => item_phrase(item),
+        };
+        if let Node::Path(word) = &phrase.node
+            && Reducer::named(word).is_none_or(|reducer| reducer.in_window().is_none())
+        {
+            let known = REDUCERS.iter().filter(|entry| entry.window.is_some());
+            let known: Vec<&str> = known.map(|entry| entry.name).collect();
+            let problem = problem!("unknown-reducer", item, "a sliding window has no `{word}`");
+            return self.refuse(match nearest(word, known.iter().copied()) {
+                Some(near) => problem.help(format!("did you mean `{near}`?")),
+                None => problem.help(format!("it has {}, p<number>", known.join(", "))),
+            });
+        }
+        self.reducer(&phrase, true)
     }
 
     /// Whether a value has the dimension that is needed; a problem if not.

@@ -102,6 +102,20 @@ pub fn regression(x: &[f64], y: &[f64]) -> Option<Line> {
     Some(Line { slope, intercept: finite(moments.mean_y - slope * moments.mean_x)? })
 }
 
+/// Root mean square about the line of least squares of y on x. `None` for fewer than three points,
+/// through which no line need go, and where there is no line.
+pub fn rms_about_trend(x: &[f64], y: &[f64]) -> Option<f64> {
+    let moments = Products::of(x, y)?;
+    if x.len() < 3 || moments.xx == 0.0 {
+        return None;
+    }
+    let slope = moments.xy / moments.xx;
+    // From the residuals: a difference of sums would lose the digits of a small scatter.
+    let residual = |x, y| (y - moments.mean_y) - slope * (x - moments.mean_x);
+    let squares = sum_of_pairs(x, y, |x, y| residual(x, y) * residual(x, y));
+    finite((squares / count(y)?).sqrt())
+}
+
 /// Pearson's correlation, in [-1, 1]. `None` for fewer than two points, signals of different
 /// length, or one of them without scatter.
 pub fn correlation(x: &[f64], y: &[f64]) -> Option<f64> {

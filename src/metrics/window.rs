@@ -1,5 +1,6 @@
-//! Mean and rms over a window that slides along an axis, in length or time.
+//! Values of a window that slides along an axis, in length or time.
 
+use std::collections::VecDeque;
 use std::fmt;
 use std::ops::Range;
 
@@ -14,13 +15,34 @@ const LAST_STEP: f64 = 1e-9;
 const MOST_WINDOWS: f64 = 1e8;
 
 /// The value of each window.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+#[derive(Clone, Copy)]
+pub enum Kind<'a> {
+    /// From running sums: one addition for each sample, however wide the window is.
     Mean,
     Rms,
+    /// A function of the smallest and the largest sample, from queues: each sample enters and
+    /// leaves once.
+    Extremes(fn(f64, f64) -> f64),
+    /// Any function of the axis and the samples of a window; `None` where it is not defined. Each
+    /// window is read again.
+    Reduced(&'a Reduce<'a>),
 }
 
-/// Treatment of the ends of a window.
+type Reduce<'a> = dyn Fn(&[f64], &[f64]) -> Option<f64> + Sync + 'a;
+
+impl fmt::Debug for Kind<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Mean => "Mean",
+            Self::Rms => "Rms",
+            Self::Extremes(_) => "Extremes",
+            Self::Reduced(_) => "Reduced",
+        })
+    }
+}
+
+/// Treatment of the ends of a window. Only mean and rms have an integral; all others are of the
+/// samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ends {
     /// The samples with `a <= x < a + width`, each with the same weight.
@@ -30,24 +52,25 @@ pub enum Ends {
 }
 
 /// A sliding window: `width` and `step` in units of the axis.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sliding {
+#[derive(Clone, Copy, Debug)]
+pub struct Sliding<'a> {
     pub width: f64,
-    pub step: f64,
-    pub kind: Kind,
+    /// `None`: a window begins at every sample.
+    pub step: Option<f64>,
+    pub kind: Kind<'a>,
     pub ends: Ends,
     /// Whether a section shorter than the window is one window by itself.
     pub short_sections: bool,
 }
 
-impl Sliding {
-    /// Start points of the windows: `start, start + step, ...` while the window is inside the
-    /// section `start..=end`.
+impl Sliding<'_> {
+    /// Start points of the windows: `start, start + step, ...`, or every sample from the start on,
+    /// while the window is inside the section `start..=end`.
     ///
     /// # Errors
     /// A width or step that is not positive; a section shorter than one window; too many windows.
-    pub fn starts(&self, start: f64, end: f64) -> Result<Vec<f64>, SlidingError> {
-        let Self { width, step, .. } = *self;
+    pub fn starts(&self, axis: &[f64], start: f64, end: f64) -> Result<Vec<f64>, SlidingError> {
+        let (width, step) = (self.width, self.least_step());
         if !(width > 0.0 && step > 0.0 && width.is_finite() && step.is_finite()) {
             return Err(SlidingError::Window { width, step });
         }
@@ -64,7 +87,22 @@ impl Sliding {
         if steps >= MOST_WINDOWS {
             return Err(SlidingError::Window { width, step });
         }
-        Ok((0..=steps as usize).map(|k| start + step * k as f64).collect())
+        if self.step.is_some() {
+            return Ok((0..=steps as usize).map(|k| start + step * k as f64).collect());
+        }
+        let first = axis.partition_point(|&x| x < start - ON_THE_EDGE);
+        let inside = |x: &f64| x + width <= end + LAST_STEP * step;
+        let mut starts: Vec<f64> = axis[first..].iter().copied().take_while(inside).collect();
+        // The section is as long as the window, and begins between two samples.
+        if starts.is_empty() {
+            starts.push(start);
+        }
+        Ok(starts)
+    }
+
+    /// The step, or the width where windows begin at every sample.
+    fn least_step(&self) -> f64 {
+        self.step.unwrap_or(self.width)
     }
 
     /// One value per window, in the order of [`Self::starts`].
@@ -83,7 +121,7 @@ impl Sliding {
         start: f64,
         end: f64,
     ) -> Result<Vec<f64>, SlidingError> {
-        let starts = self.starts(start, end)?;
+        let starts = self.starts(axis, start, end)?;
         if axis.len() != signal.len() {
             return Err(SlidingError::Lengths { axis: axis.len(), signal: signal.len() });
         }
@@ -97,10 +135,9 @@ impl Sliding {
             return Err(SlidingError::TooFewSamples { samples: axis.len() });
         };
         let (before_last, last) = (axis[axis.len() - 2], axis[axis.len() - 1]);
-        let (ahead, behind) = match self.ends {
-            Ends::Samples => (second - first, last - before_last),
-            Ends::Integral => (0.0, 0.0),
-        };
+        let integral = self.of_sums() && self.ends == Ends::Integral;
+        let (ahead, behind) =
+            if integral { (0.0, 0.0) } else { (second - first, last - before_last) };
         if first > start + ahead + ON_THE_EDGE || last < end - behind - ON_THE_EDGE {
             return Err(SlidingError::Record {
                 first: whole[0],
@@ -110,14 +147,19 @@ impl Sliding {
             });
         }
         let fitted = Self { width: self.width_in(start, end), ..*self };
-        let averages = match self.ends {
-            Ends::Samples => fitted.of_samples(axis, signal, &starts)?,
-            Ends::Integral => fitted.of_integral(axis, signal, &starts),
+        let values = if integral {
+            fitted.of_integral(axis, signal, &starts)
+        } else {
+            fitted.of_samples(axis, signal, &starts)?
         };
-        match averages.iter().zip(&starts).find(|(value, _)| !value.is_finite()) {
+        match values.iter().zip(&starts).find(|(value, _)| !value.is_finite()) {
             Some((_, &from)) => Err(SlidingError::NotFinite { from }),
-            None => Ok(averages),
+            None => Ok(values),
         }
+    }
+
+    fn of_sums(&self) -> bool {
+        matches!(self.kind, Kind::Mean | Kind::Rms)
     }
 
     /// The samples that windows of the section may use, with two more on each side where there are
@@ -125,7 +167,7 @@ impl Sliding {
     fn near(&self, axis: &[f64], start: f64, end: f64) -> Range<usize> {
         let from = axis.partition_point(|&x| x < start - ON_THE_EDGE).saturating_sub(2);
         let to = axis
-            .partition_point(|&x| x <= end + ON_THE_EDGE + LAST_STEP * self.step)
+            .partition_point(|&x| x <= end + ON_THE_EDGE + LAST_STEP * self.least_step())
             .saturating_add(2)
             .min(axis.len());
         if from + 2 <= to { from..to } else { 0..axis.len() }
@@ -136,7 +178,9 @@ impl Sliding {
     fn width_in(&self, start: f64, end: f64) -> f64 {
         let length = end - start;
         match self.ends {
-            _ if !self.short_sections || length >= self.width - LAST_STEP * self.step => self.width,
+            _ if !self.short_sections || length >= self.width - LAST_STEP * self.least_step() => {
+                self.width
+            }
             Ends::Samples => length + 2.0 * ON_THE_EDGE,
             Ends::Integral => length,
         }
@@ -148,19 +192,36 @@ impl Sliding {
         signal: &[f64],
         starts: &[f64],
     ) -> Result<Vec<f64>, SlidingError> {
-        let sums = RunningSums::new(signal.iter().map(|&value| self.power(value)));
         let first_at = |point: f64| axis.partition_point(|&at| at < point);
-        starts
-            .iter()
-            .map(|&from| {
-                let first = first_at(from - ON_THE_EDGE);
-                let beyond = first_at(from + self.width - ON_THE_EDGE);
-                if beyond == first {
-                    return Err(SlidingError::Empty { from, width: self.width });
-                }
-                Ok(self.root(sums.between(first, beyond) / (beyond - first) as f64))
-            })
-            .collect()
+        let window = |&from: &f64| {
+            let window = first_at(from - ON_THE_EDGE)..first_at(from + self.width - ON_THE_EDGE);
+            if window.is_empty() {
+                return Err(SlidingError::Empty { from, width: self.width });
+            }
+            Ok(window)
+        };
+        let windows: Vec<Range<usize>> = starts.iter().map(window).collect::<Result<_, _>>()?;
+        match self.kind {
+            Kind::Mean | Kind::Rms => {
+                let sums = RunningSums::new(signal.iter().map(|&value| self.power(value)));
+                let mean = |window: &Range<usize>| {
+                    self.root(sums.between(window.start, window.end) / window.len() as f64)
+                };
+                Ok(windows.iter().map(mean).collect())
+            }
+            Kind::Extremes(of) => Ok(extremes(signal, &windows)
+                .into_iter()
+                .map(|(low, high)| of(low, high))
+                .collect()),
+            Kind::Reduced(of) => {
+                let reduced = |(window, &from): (Range<usize>, &f64)| {
+                    let samples = window.len();
+                    of(&axis[window.clone()], &signal[window])
+                        .ok_or(SlidingError::Undefined { from, samples })
+                };
+                windows.into_iter().zip(starts).map(reduced).collect()
+            }
+        }
     }
 
     fn of_integral(&self, axis: &[f64], signal: &[f64], starts: &[f64]) -> Vec<f64> {
@@ -187,25 +248,56 @@ impl Sliding {
     /// Integral over an interval of this length in which the signal is linear from `x` to `y`.
     fn integral(&self, length: f64, x: f64, y: f64) -> f64 {
         match self.kind {
-            Kind::Mean => 0.5 * length * (x + y),
             Kind::Rms => length / 3.0 * (x * x + x * y + y * y),
+            _ => 0.5 * length * (x + y),
         }
     }
 
     fn power(&self, value: f64) -> f64 {
         match self.kind {
-            Kind::Mean => value,
             Kind::Rms => value * value,
+            _ => value,
         }
     }
 
     fn root(&self, average: f64) -> f64 {
         match self.kind {
-            Kind::Mean => average,
             // For a window of zeros, rounding may give a small negative number.
             Kind::Rms => average.clamp(0.0, f64::INFINITY).sqrt(),
+            _ => average,
         }
     }
+}
+
+/// The smallest and the largest sample of each window; not a number where one is not finite. The
+/// windows are in order. A queue holds the samples of the window that no later one exceeds.
+fn extremes(signal: &[f64], windows: &[Range<usize>]) -> Vec<(f64, f64)> {
+    let mut queues = [VecDeque::new(), VecDeque::new()];
+    let mut next = 0;
+    let mut ends = Vec::with_capacity(windows.len());
+    for window in windows {
+        for at in next.max(window.start)..window.end {
+            let value = if signal[at].is_finite() { signal[at] } else { f64::NAN };
+            for (queue, value) in queues.iter_mut().zip([value, -value]) {
+                // What is not a number stays until it leaves the window.
+                while queue.back().is_some_and(|&(_, back): &(usize, f64)| {
+                    !back.is_nan() && (back >= value || value.is_nan())
+                }) {
+                    queue.pop_back();
+                }
+                queue.push_back((at, value));
+            }
+        }
+        next = next.max(window.end);
+        let [low, high] = queues.each_mut().map(|queue| {
+            while queue.front().is_some_and(|&(at, _)| at < window.start) {
+                queue.pop_front();
+            }
+            queue.front().map_or(f64::NAN, |&(_, value)| value)
+        });
+        ends.push((low, -high));
+    }
+    ends
 }
 
 /// Reason why there are no sliding values. Places are in units of the axis.
@@ -248,6 +340,11 @@ pub enum SlidingError {
     NotFinite {
         from: f64,
     },
+    /// The value is not defined for so few samples, or for samples without scatter.
+    Undefined {
+        from: f64,
+        samples: usize,
+    },
 }
 
 impl SlidingError {
@@ -289,6 +386,10 @@ impl SlidingError {
             }
             Self::NotFinite { from } => {
                 format!("the window from {} has a value that is not finite", shown(from))
+            }
+            Self::Undefined { from, samples } => {
+                let from = shown(from);
+                format!("the window from {from} has no such value, with {samples} samples")
             }
         }
     }

@@ -15,7 +15,7 @@ use fishplate::check::{Override, Overrides, family, plan::SetBy};
 use fishplate::data::Campaign;
 use fishplate::library;
 use fishplate::problem::Problems;
-use fishplate::result::{Certification, QuantityResult, StatisticResult, Verdict};
+use fishplate::result::{Certification, QuantityResult, StatisticResult, ValueResult, Verdict};
 use fishplate::run::{Settings, Shifts, evaluate};
 use fishplate::source::Source;
 use fishplate::syntax::document::Text;
@@ -245,6 +245,33 @@ fn spatial_filters_and_sliding_windows_run() {
     let rms = quantity(&found, "SigmaY_rms");
     assert_eq!(rms.values.len(), 8);
     near(statistic(&found, "SigmaY_rms", "std", "all").limit, 0.1 * (10.0 + 2.0 / 3.0 * 60.0));
+}
+
+/// Of the line 4 kN + 0.01 kN/m (x - 30 m) with samples each 0.1 m, 0.005 s apart, by hand: 20 samples
+/// in 2 m, 200 in 1 s; the last window of 5 ft from a sample begins at 148.4 m. Of n samples of the
+/// parabola c k², what the line leaves has the rms c √((n² - 1)(n² - 4)/180).
+#[test]
+fn values_of_sliding_windows_run() {
+    let found = run("sliding_values.fp", &[]);
+    let measured = |found: &Certification, id: &str| {
+        let of = |value: &&ValueResult| value.section == "S2";
+        quantity(found, id).values.iter().find(of).expect("a value").measured
+    };
+    near(measured(&found, "throughout"), 4.0 + SLOPE * 118.4);
+    near(measured(&found, "any_second"), SLOPE * 19.9);
+    near(measured(&found, "scatter"), SLOPE * 0.1 * 35_f64.sqrt());
+    near(measured(&found, "steepest"), SLOPE);
+    let parabola = |n: f64| (SLOPE * 0.1).powi(2) * ((n * n - 1.0) * (n * n - 4.0) / 180.0).sqrt();
+    for (id, samples) in [("about_trend", 20.0), ("whole_about_trend", 1201.0)] {
+        let ratio = measured(&found, id).expect("a value") / parabola(samples);
+        assert!((ratio - 1.0).abs() < 1e-7, "{id}: {ratio}");
+    }
+    // The largest of 20 samples is 1.9 m behind their start; of five windows, the fourth.
+    near(measured(&found, "chosen"), 4.0 + SLOPE * 31.9);
+    near(
+        measured(&run("sliding_values.fp", &[("which", "minimum")]), "chosen"),
+        4.0 + SLOPE * 30.0,
+    );
 }
 
 /// Lines of equal slope have equal variances: the probability is 1, and what is left are the means.

@@ -1,5 +1,6 @@
 //! Filters and their steps.
 
+use crate::catalog::Reducer;
 use crate::metrics::filter::{Band, Cutoff, Phase, TransferFunction, Warping};
 use crate::metrics::window::Ends;
 use crate::source::Span;
@@ -31,10 +32,30 @@ pub struct Step {
 /// Steps with numbers in SI. A length or time step states the axis it is used over.
 #[derive(Clone, Debug, PartialEq)]
 pub enum StepSpec {
-    Butterworth { band: Band, order: usize, phase: Phase, cutoff: Cutoff },
-    Transfer { function: TransferFunction, phase: Phase, warping: Warping },
-    Window { rms: bool, width: f64, step: f64, over_time: bool, ends: Ends, short_sections: bool },
-    Resample { step: f64, over_time: bool },
+    Butterworth {
+        band: Band,
+        order: usize,
+        phase: Phase,
+        cutoff: Cutoff,
+    },
+    Transfer {
+        function: TransferFunction,
+        phase: Phase,
+        warping: Warping,
+    },
+    Window {
+        reducer: Reducer,
+        width: f64,
+        /// `None`: a window begins at every sample.
+        step: Option<f64>,
+        over_time: bool,
+        ends: Ends,
+        short_sections: bool,
+    },
+    Resample {
+        step: f64,
+        over_time: bool,
+    },
     RemoveMean,
     Magnitude,
 }

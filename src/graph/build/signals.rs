@@ -224,7 +224,7 @@ impl Builder {
             );
         }
         for step in &chain[inside..] {
-            let dimension = self.nodes[node].dimension;
+            let dimension = self.nodes[node].dimension * step.factor;
             let kind = format!("window {:?}", step.kind);
             node = self.add(
                 Operation::Window(step.kind.clone()),

@@ -183,7 +183,7 @@ impl<'a> Signals<'a> {
             for step in inside {
                 samples = match step {
                     None => samples.cut(extent)?,
-                    Some(spec) => samples.windowed(spec, extent)?,
+                    Some(spec) => samples.windowed(spec, extent, self.method)?,
                 };
             }
             Ok(samples)

@@ -3,10 +3,13 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use crate::catalog::InWindow;
 use crate::check::evaluate::number;
 use crate::check::plan::{AxisOperation, Operator, StepSpec};
 use crate::check::values::Values;
 use crate::metrics::filter::Filter;
+use crate::metrics::percentile::Method;
+use crate::metrics::sampling::Traits;
 use crate::metrics::window::{Kind, Sliding};
 use crate::metrics::{along, resample};
 use crate::result::Reason;
@@ -197,7 +200,12 @@ impl Samples {
 
     /// A step inside the section. A window uses the samples of the record and stays inside the
     /// section.
-    pub fn windowed(&self, spec: &StepSpec, extent: Extent) -> Result<Self, Reason> {
+    pub fn windowed(
+        &self,
+        spec: &StepSpec,
+        extent: Extent,
+        method: Method,
+    ) -> Result<Self, Reason> {
         match spec {
             StepSpec::RemoveMean => {
                 let mean =
@@ -205,9 +213,13 @@ impl Samples {
                 Ok(self.with(self.values.iter().map(|value| value - mean).collect()))
             }
             StepSpec::Magnitude => self.stepped(spec),
-            StepSpec::Window { rms, width, step, over_time, ends, short_sections } => {
-                let kind = if *rms { Kind::Rms } else { Kind::Mean };
+            StepSpec::Window { reducer, width, step, over_time, ends, short_sections } => {
                 let (over, (start, end)) = self.window_axis(*over_time, extent)?;
+                let itself = |axis: &[f64], x: &[f64]| reducer.run(axis, &Traits::of(x), method);
+                let kind = match reducer.in_window() {
+                    Some(InWindow::Fast(kind)) => kind,
+                    _ => Kind::Reduced(&itself),
+                };
                 let sliding = Sliding {
                     width: *width,
                     step: *step,
@@ -218,10 +230,12 @@ impl Samples {
                 let values = sliding.over(over, &self.values, start, end).map_err(|error| {
                     Reason::method(error.in_words(if *over_time { "s" } else { "m" }))
                 })?;
-                let starts = sliding.starts(start, end).map_err(Reason::method)?;
+                let starts = sliding.starts(over, start, end).map_err(Reason::method)?;
                 let middle: Vec<f64> =
                     starts.iter().map(|from| from + width.min(end - start) / 2.0).collect();
-                self.at_points(middle, values, *step, *over_time, None)
+                let between = (starts[starts.len() - 1] - starts[0]) / (starts.len() - 1) as f64;
+                let step = step.or((between > 0.0).then_some(between)).unwrap_or(*width);
+                self.at_points(middle, values, step, *over_time, None)
             }
             _ => Err(Reason::Internal),
         }

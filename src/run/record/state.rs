@@ -419,7 +419,9 @@ impl State<'_> {
                 Ok(Signal::Samples(self.cutter.cut(&samples)?))
             }
             Operation::Window(spec) => {
-                Ok(Signal::Samples(self.samples(node.inputs[0])?.windowed(spec, self.extent)?))
+                let method = self.plan.sections.percentiles;
+                let samples = self.samples(node.inputs[0])?;
+                Ok(Signal::Samples(samples.windowed(spec, self.extent, method)?))
             }
             _ => Err(Reason::Internal),
         }

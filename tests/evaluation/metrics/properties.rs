@@ -65,7 +65,7 @@ proptest! {
         let (start, end) = (axis[0], axis[axis.len() - 1]);
         for ends in [Ends::Samples, Ends::Integral] {
             for (kind, expected) in [(Kind::Mean, level), (Kind::Rms, level.abs())] {
-                if let Ok(values) = (Sliding { width, step, kind, ends, short_sections: false }).over(&axis, &signal, start, end) {
+                if let Ok(values) = (Sliding { width, step: Some(step), kind, ends, short_sections: false }).over(&axis, &signal, start, end) {
                     prop_assert!(values.iter().all(|value| (value - expected).abs() <= 1e-12 * level.abs()));
                 } else {
                     prop_assert!(end - start < width);

@@ -164,12 +164,12 @@ fn sliding_means() {
             for (ends, key) in [(Ends::Samples, "samples"), (Ends::Integral, "integral")] {
                 let window = Sliding {
                     width: 2.0,
-                    step: 0.5,
+                    step: Some(0.5),
                     kind: Kind::Mean,
                     ends,
                     short_sections: false,
                 };
-                let starts = window.starts(start, end).expect("a section");
+                let starts = window.starts(&pair.distance, start, end).expect("a section");
                 assert_eq!(starts.len() as f64, number(&expected["windows"]));
                 assert_eq!(
                     [starts[0], starts[starts.len() - 1]].to_vec(),
