@@ -6,6 +6,7 @@ use super::possible::possible;
 use super::prelude::*;
 use super::values::{Values, leaf};
 use crate::result::Reason;
+use crate::units::raised;
 
 /// The value of an expression. Where names have no value, the result is the value that the
 /// expression has for every value of them, if there is one.
@@ -26,9 +27,7 @@ fn exactly(expr: &Expr, values: &dyn Values) -> Result<Scalar, Reason> {
     let result = match &expr.kind {
         Kind::Negative(inner) => Scalar::Number(-number(inner, values)?),
         Kind::Not(inner) => Scalar::Flag(!flag(inner, values)?),
-        Kind::Power(inner, exponent) => {
-            Scalar::Number(number(inner, values)?.powi(i32::from(*exponent)))
-        }
+        Kind::Power(inner, exponent) => Scalar::Number(raised(number(inner, values)?, *exponent)),
         Kind::Binary(operator, left, right) => binary(*operator, left, right, values)?,
         Kind::Call(function, arguments) => {
             let arguments = arguments

@@ -92,13 +92,7 @@ impl Checker<'_> {
                 (Kind::Call(function("magnitude")?, vec![inner]), ty)
             }
             Node::Power(inner, exponent) => {
-                let inner = self.expr(inner, scope)?;
-                let Some(dimension) = self.number_type(&inner)?.power(*exponent) else {
-                    let says = "this power gives exponents of units that are too large";
-                    return self.refuse(error("power", says, &span));
-                };
-                let ty = inner.ty.of_dimension(dimension);
-                (Kind::Power(Box::new(inner), *exponent), ty)
+                return self.power(inner, exponent, span, scope);
             }
             Node::Binary(operator @ (Operator::Is | Operator::IsNot), left, right) => {
                 return self.equality(*operator, left, right, &span, scope);
@@ -198,6 +192,28 @@ impl Checker<'_> {
             problem!("signal-not-number", span, "expected a number, `{signal}` is a signal")
                 .help("take a number from it: `mean of ...`, `range of ...`"),
         )
+    }
+
+    /// A power. The exponent is a plain number that is constant.
+    fn power(
+        &mut self,
+        base: &Phrase,
+        exponent: &Phrase,
+        span: Origin,
+        scope: &mut Scope,
+    ) -> Option<Expr> {
+        let base = self.expr(base, scope)?;
+        let of = self.number_type(&base)?;
+        let (value, unit) = self.constant_phrase(exponent)?;
+        self.suits("exponent", unit == Dimension::ONE, "a plain number", unit, &exponent.place())?;
+        let Some(dimension) = of.power(value) else {
+            let problem = problem!("power", &span, "{} has no power of {value}", of.in_words());
+            return self.refuse(problem.also(&base.span, of.in_words()).help(
+                "exponents of units are fractions such as 1/3, 0.3 or 1.5: whole sixtieths, up to 127; a third is `(1/3)`",
+            ));
+        };
+        let ty = base.ty.of_dimension(dimension);
+        self.folded(Expr { kind: Kind::Power(Box::new(base), value), ty, span }, scope)
     }
 
     /// Arithmetic, a comparison of numbers, or conditions that are joined.
@@ -377,7 +393,7 @@ impl Checker<'_> {
                     format!("`{name}` needs a plain number or an angle, this is {}", of.in_words());
                 (says, first)
             }
-            Signature::Root => match of.root() {
+            Signature::Root => match of.power(0.5) {
                 Some(root) => return Some(root),
                 None => (format!("{} has no square root", of.in_words()), first),
             },

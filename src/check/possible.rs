@@ -8,6 +8,7 @@
 use super::prelude::*;
 use super::values::{Values, leaf};
 use crate::catalog::Function;
+use crate::units::raised;
 
 /// All values that an expression may have.
 #[derive(Clone, Debug, PartialEq)]
@@ -104,7 +105,7 @@ pub fn possible(expr: &Expr, values: &dyn Values) -> Possible {
             let (can_hold, can_fail) = of(inner).holds();
             Possible::Flag { can_hold: can_fail, can_fail: can_hold }
         }
-        Kind::Power(inner, exponent) => power(of(inner).bounds(), i32::from(*exponent)),
+        Kind::Power(inner, exponent) => power(of(inner).bounds(), *exponent),
         Kind::Binary(Operator::And, left, right) => {
             let ((a, b), (c, d)) = (of(left).holds(), of(right).holds());
             Possible::Flag { can_hold: a && c, can_fail: b || d }
@@ -199,14 +200,17 @@ fn binary(operator: Operator, left: (f64, f64), right: (f64, f64)) -> Possible {
     }
 }
 
-fn power((low, high): (f64, f64), exponent: i32) -> Possible {
-    let (a, b) = (low.powi(exponent), high.powi(exponent));
+fn power((low, high): (f64, f64), exponent: f64) -> Possible {
+    let (a, b) = (raised(low, exponent), raised(high, exponent));
     let crosses = low <= 0.0 && high >= 0.0;
-    match exponent {
-        0 => Possible::Number(1.0, 1.0),
-        _ if exponent < 0 && crosses => interval(f64::NAN, f64::NAN),
-        _ if exponent > 0 && exponent % 2 == 0 && crosses => interval(0.0, a.max(b)),
-        _ => interval(a.min(b), a.max(b)),
+    if exponent == 0.0 {
+        return Possible::Number(1.0, 1.0);
+    }
+    let without = exponent < 0.0 && crosses || exponent.fract() != 0.0 && low < 0.0;
+    match without {
+        true => interval(f64::NAN, f64::NAN),
+        false if exponent > 0.0 && exponent % 2.0 == 0.0 && crosses => interval(0.0, a.max(b)),
+        false => interval(a.min(b), a.max(b)),
     }
 }
 

@@ -195,7 +195,7 @@ mod tests {
 
     use super::*;
 
-    const FORCE: Dimension = Dimension([1, 1, -2, 0, 0, 0]);
+    const FORCE: Dimension = Dimension::of([1, 1, -2, 0, 0, 0]);
 
     fn read(bytes: &[u8], wanted: &[Wanted]) -> Result<Record, Vec<Problem>> {
         let file = tempfile::NamedTempFile::new().expect("a temporary file");

@@ -9,7 +9,7 @@ use crate::problem::{Problem, Problems, error};
 use crate::syntax::document::Text;
 use crate::syntax::from_pest::expression;
 use crate::syntax::phrase::{Node, Operator, Phrase};
-use crate::units::{Dimension, Unit};
+use crate::units::{Dimension, Unit, raised};
 
 /// The expression for a channel, with consistent units.
 #[derive(Clone, Debug, PartialEq)]
@@ -107,7 +107,8 @@ impl Formula {
             Node::Negative(inner) => each(&[of(inner)?], |x| -x[0]),
             Node::Magnitude(inner) => each(&[of(inner)?], |x| x[0].abs()),
             Node::Power(inner, exponent) => {
-                each(&[of(inner)?], |x| x[0].powi(i32::from(*exponent)))
+                let exponent = exponent.plain_number()?;
+                each(&[of(inner)?], |x| raised(x[0], exponent))
             }
             Node::Binary(operator, left, right) => {
                 each(&[of(left)?, of(right)?], |x| match operator {
@@ -178,10 +179,20 @@ impl Checker<'_> {
             Node::Number(number) => Some(number.dimension()),
             Node::Path(name) => self.named(name, phrase),
             Node::Negative(inner) | Node::Magnitude(inner) => self.dimension(inner),
-            Node::Power(inner, exponent) => match self.dimension(inner)?.power(*exponent) {
-                None => self.refuse(error("power", "this power is beyond any unit", phrase)),
-                found => found,
-            },
+            Node::Power(inner, exponent) => {
+                let base = self.dimension(inner)?;
+                let found = exponent.plain_number().map(|exponent| base.power(exponent));
+                match found {
+                    Some(Some(dimension)) => Some(dimension),
+                    Some(None) => {
+                        self.refuse(error("power", "this power is beyond any unit", phrase))
+                    }
+                    None => {
+                        let says = "an exponent here is a number such as 2, 0.3 or (1/3)";
+                        self.refuse(error("power", says, &**exponent))
+                    }
+                }
+            }
             Node::Binary(operator, left, right) => {
                 let (left, right) = (self.dimension(left), self.dimension(right));
                 let (a, b) = (left?, right?);
@@ -242,7 +253,7 @@ impl Checker<'_> {
             Signature::Same => Some(first),
             Signature::ToPlain => Some(Dimension::ONE),
             Signature::Plain => (first == Dimension::ONE).then_some(first),
-            Signature::Root => first.root(),
+            Signature::Root => first.power(0.5),
             Signature::PairSame => (first == found[1]).then_some(first),
         };
         if dimension.is_some() {

@@ -115,7 +115,7 @@ pub enum Operation {
     Constant(Expr),
     Arithmetic(Operator),
     Negative,
-    Power(i8),
+    Power(f64),
     Apply(&'static Function),
     /// Shifted, differentiated or integrated along the axis.
     OverAxis(AxisOperation),

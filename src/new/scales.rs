@@ -6,15 +6,15 @@ use crate::diagnose::observe::layout::Spectrum;
 use crate::init::protocol::identifier;
 use crate::units::{Dimension, Unit};
 
-const FORCE: Dimension = Dimension([1, 1, -2, 0, 0, 0]);
-const MOMENT: Dimension = Dimension([2, 1, -2, 0, 0, 0]);
-const CURRENT: Dimension = Dimension([0, 0, 0, 0, 1, 0]);
-const VOLTAGE: Dimension = Dimension([2, 1, -3, 0, -1, 0]);
-const PRESSURE: Dimension = Dimension([-1, 1, -2, 0, 0, 0]);
+const FORCE: Dimension = Dimension::of([1, 1, -2, 0, 0, 0]);
+const MOMENT: Dimension = Dimension::of([2, 1, -2, 0, 0, 0]);
+const CURRENT: Dimension = Dimension::of([0, 0, 0, 0, 1, 0]);
+const VOLTAGE: Dimension = Dimension::of([2, 1, -3, 0, -1, 0]);
+const PRESSURE: Dimension = Dimension::of([-1, 1, -2, 0, 0, 0]);
 const FORCES: [Dimension; 5] = [FORCE, MOMENT, CURRENT, VOLTAGE, PRESSURE];
-const SPEED: Dimension = Dimension([1, 0, -1, 0, 0, 0]);
-const ACCELERATION: Dimension = Dimension([1, 0, -2, 0, 0, 0]);
-const TURN_ACCELERATION: Dimension = Dimension([0, 0, -2, 0, 0, 0]);
+const SPEED: Dimension = Dimension::of([1, 0, -1, 0, 0, 0]);
+const ACCELERATION: Dimension = Dimension::of([1, 0, -2, 0, 0, 0]);
+const TURN_ACCELERATION: Dimension = Dimension::of([0, 0, -2, 0, 0, 0]);
 /// Units of angles; a column in another plain number is no motion.
 const ANGLES: [&str; 6] = ["rad", "mrad", "deg", "°", "rev", "urad"];
 /// Parts of the spectrum in which a motion is differentiated or integrated.

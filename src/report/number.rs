@@ -150,9 +150,14 @@ pub fn unit(text: &str) -> String {
     }
     let mut printed = String::with_capacity(text.len());
     let mut raised = false;
-    for c in text.chars() {
+    for (at, c) in text.char_indices() {
         match c {
-            '^' => raised = true,
+            '^' => {
+                raised = !is_fraction(&text[at + 1..]);
+                if !raised {
+                    printed.push(c);
+                }
+            }
             '-' if raised => printed.push('⁻'),
             '0'..='9' if raised => printed.push(superscript(c)),
             _ => {
@@ -182,7 +187,7 @@ pub fn raised(text: impl Display) -> String {
         let behind_digit = before.is_some_and(|c: char| c.is_ascii_digit());
         let mut taken = letter.len_utf8();
         match letter {
-            '^' if starts_number(after.trim_start_matches('-')) => {
+            '^' if starts_number(after.trim_start_matches('-')) && !is_fraction(after) => {
                 let exponent = &after[..after
                     .find(|c: char| c != '-' && !c.is_ascii_digit())
                     .unwrap_or(after.len())];
@@ -215,6 +220,15 @@ pub fn raised(text: impl Display) -> String {
         rest = &rest[taken..];
     }
     printed
+}
+
+/// Whether an exponent has decimals or is a quotient: there are no raised points, so that it stays
+/// as it is written, `m/s^1.5`.
+fn is_fraction(exponent: &str) -> bool {
+    let after = exponent.trim_start_matches(|c: char| c == '-' || c.is_ascii_digit());
+    let decimals =
+        after.strip_prefix('.').is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit()));
+    exponent.starts_with('(') || decimals
 }
 
 /// The unit whose reciprocal a text starts with: `m` of `1/m`, not of `1/m^2`.

@@ -111,6 +111,27 @@ impl PartialEq for Number {
     }
 }
 
+impl Phrase {
+    /// The value of plain numbers alone, such as `(1/3)`.
+    pub fn plain_number(&self) -> Option<f64> {
+        match &self.node {
+            Node::Number(Number { value, unit: None }) => Some(*value),
+            Node::Negative(of) => Some(-of.plain_number()?),
+            Node::Binary(operator, a, b) => {
+                let (a, b) = (a.plain_number()?, b.plain_number()?);
+                match operator {
+                    Operator::Add => Some(a + b),
+                    Operator::Subtract => Some(a - b),
+                    Operator::Multiply => Some(a * b),
+                    Operator::Divide => Some(a / b),
+                    _ => None,
+                }
+            }
+            _ => None,
+        }
+    }
+}
+
 /// A node of an expression. Nodes are equal if they mean the same, however they are spelt.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Node {
@@ -125,7 +146,8 @@ pub enum Node {
     Negative(Box<Phrase>),
     Not(Box<Phrase>),
     Magnitude(Box<Phrase>),
-    Power(Box<Phrase>, i8),
+    /// `a^2`, `a²`, `a^0.3`, `a^(1/3)`: the exponent is constant.
+    Power(Box<Phrase>, Box<Phrase>),
     /// `name(a, b)`, and `larger of a, b` as `larger(a, b)`.
     Call(At<String>, Vec<Phrase>),
     /// `mean of Q near 50 kN within 10 kN`, or `within a factor of 2`.

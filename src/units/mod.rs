@@ -61,6 +61,13 @@ impl Unit {
     }
 }
 
+/// A number to a power: by multiplications where the exponent is whole. Not a number for a negative
+/// one and an exponent that is not whole.
+pub fn raised(number: f64, exponent: f64) -> f64 {
+    let whole = exponent.fract() == 0.0 && exponent.abs() <= f64::from(i8::MAX);
+    if whole { number.powi(exponent as i32) } else { number.powf(exponent) }
+}
+
 impl fmt::Display for Unit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.text)

@@ -1,7 +1,7 @@
-//! Reads compound units: products by space, `*` or `·`, one or more `/`, powers as `^2`, `²`, `^-1`
-//! or `m2`.
+//! Reads compound units: products by space, `*` or `·`, one or more `/`, powers as `^2`, `²`, `^-1`,
+//! `m2`, `^1.5` or `^(1/3)`.
 
-use super::{Dimension, SYMBOLS, Unit, UnknownUnit};
+use super::{Dimension, SYMBOLS, Unit, UnknownUnit, raised};
 
 pub(super) fn unit(text: &str) -> Result<Unit, UnknownUnit> {
     let mut factor = 1.0;
@@ -30,13 +30,18 @@ pub(super) fn unit(text: &str) -> Result<Unit, UnknownUnit> {
             _ if !expects_symbol => return Err(unknown(rest)),
             _ => {}
         }
-        let end = rest.find([' ', '*', '·', '/']).unwrap_or(rest.len());
+        let mut inside = false;
+        let ends = |c: char| {
+            inside = c == '(' || inside && c != ')';
+            !inside && matches!(c, ' ' | '*' | '·' | '/')
+        };
+        let end = rest.find(ends).unwrap_or(rest.len());
         let word = &rest[..end];
         let (symbol, exponent) = power(word).ok_or_else(|| unknown(word))?;
         let known =
             SYMBOLS.iter().find(|known| known.symbol == symbol).ok_or_else(|| unknown(symbol))?;
         let exponent = if below { -exponent } else { exponent };
-        factor *= known.factor.powi(i32::from(exponent));
+        factor *= raised(known.factor, exponent);
         dimension = dimension * known.dimension.power(exponent).ok_or_else(|| unknown(word))?;
         rest = &rest[end..];
         expects_symbol = false;
@@ -58,17 +63,22 @@ fn near(word: &str) -> Option<&'static str> {
 }
 
 /// `s^2`, `s²`, `s2`, `m^-1` into symbol and exponent.
-fn power(word: &str) -> Option<(&str, i8)> {
+fn power(word: &str) -> Option<(&str, f64)> {
     if word == "1" {
-        return Some((word, 1));
+        return Some((word, 1.0));
     }
+    let usual = |exponent: &f64| (-9.0..=9.0).contains(exponent);
     if let Some((symbol, exponent)) = word.split_once('^') {
-        return Some((
-            symbol,
-            exponent.parse().ok().filter(|exponent: &i8| (-9..=9).contains(exponent))?,
-        ));
+        let bare = exponent.strip_prefix('(').and_then(|inner| inner.strip_suffix(')'));
+        let exponent = match bare.and_then(|bare| bare.split_once('/')) {
+            Some((above, below)) => {
+                above.trim().parse::<f64>().ok()? / below.trim().parse::<f64>().ok()?
+            }
+            None => bare.unwrap_or(exponent).parse().ok()?,
+        };
+        return Some((symbol, exponent)).filter(|(_, exponent)| usual(exponent));
     }
-    for (mark, exponent) in [("⁻¹", -1), ("⁻²", -2), ("²", 2), ("³", 3)] {
+    for (mark, exponent) in [("⁻¹", -1.0), ("⁻²", -2.0), ("²", 2.0), ("³", 3.0)] {
         if let Some(symbol) = word.strip_suffix(mark) {
             return Some((symbol, exponent));
         }
@@ -77,10 +87,10 @@ fn power(word: &str) -> Option<(&str, i8)> {
     if digits.len() < word.len() && !digits.is_empty() {
         return Some((
             digits,
-            word[digits.len()..].parse().ok().filter(|exponent: &i8| (1..=9).contains(exponent))?,
+            word[digits.len()..].parse().ok().filter(|exponent| (1.0..=9.0).contains(exponent))?,
         ));
     }
-    Some((word, 1))
+    Some((word, 1.0))
 }
 
 #[cfg(test)]
@@ -106,7 +116,30 @@ mod tests {
         ] {
             let unit = unit(text).unwrap_or_else(|e| panic!("{text}: {e:?}"));
             assert!((unit.factor / factor - 1.0).abs() < 1e-15, "{text}");
-            assert_eq!(unit.dimension, Dimension(dimension), "{text}");
+            assert_eq!(unit.dimension, Dimension::of(dimension), "{text}");
+        }
+    }
+
+    /// Factors by definition: a kilowatt to the power of 0.3 is 1000^0.3 of a watt's.
+    #[test]
+    fn powers_with_decimals_and_fractions() {
+        for (text, factor, dimension) in [
+            ("m/s^1.5", 1.0, "m s^-1.5"),
+            ("mm/s^1.5", 1e-3, "m s^-1.5"),
+            ("m s^-1.5", 1.0, "m s^-1.5"),
+            ("m^0.5", 1.0, "m^0.5"),
+            ("km^(1/3)", 10.0, "m^(1/3)"),
+            ("N/m^(-2/3)", 1.0, "m^(5/3) kg s^-2"),
+            ("kW^0.3", 7.943_282_347_242_815, "m^0.6 kg^0.3 s^-0.9"),
+        ] {
+            let unit = unit(text).unwrap_or_else(|e| panic!("{text}: {e:?}"));
+            assert!((unit.factor / factor - 1.0).abs() < 1e-15, "{text}");
+            assert_eq!(unit.dimension.to_string(), dimension, "{text}");
+        }
+        for text in
+            ["m^0.333", "m^(1/7)", "m^(1/0)", "m^(1/3", "m^1/3)", "m^nan", "m^9.5", "m^(/3)"]
+        {
+            assert!(unit(text).is_err(), "{text}");
         }
     }
 

@@ -11,7 +11,7 @@ use fishplate::data::write::{Entry, OutColumn, Outputs, campaign_yaml, record_cs
 use fishplate::problem::{Problem, Problems};
 use fishplate::units::{Dimension, Unit};
 
-const FORCE: Dimension = Dimension([1, 1, -2, 0, 0, 0]);
+const FORCE: Dimension = Dimension::of([1, 1, -2, 0, 0, 0]);
 
 fn cases(path: &str) -> PathBuf {
     Path::new("tests/cases/data").join(path)

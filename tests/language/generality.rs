@@ -15,7 +15,7 @@ use fishplate::check::{Override, Overrides, family, plan::SetBy};
 use fishplate::data::Campaign;
 use fishplate::library;
 use fishplate::problem::Problems;
-use fishplate::result::{Certification, QuantityResult, StatisticResult, ValueResult, Verdict};
+use fishplate::result::{Certification, QuantityResult, StatisticResult, Verdict};
 use fishplate::run::{Settings, Shifts, evaluate};
 use fishplate::source::Source;
 use fishplate::syntax::document::Text;
@@ -254,7 +254,7 @@ fn spatial_filters_and_sliding_windows_run() {
 fn values_of_sliding_windows_run() {
     let found = run("sliding_values.fp", &[]);
     let measured = |found: &Certification, id: &str| {
-        let of = |value: &&ValueResult| value.section == "S2";
+        let of = |value: &&fishplate::result::PairValue| value.section == "S2";
         quantity(found, id).values.iter().find(of).expect("a value").measured
     };
     near(measured(&found, "throughout"), 4.0 + SLOPE * 118.4);
@@ -272,6 +272,32 @@ fn values_of_sliding_windows_run() {
         measured(&run("sliding_values.fp", &[("which", "minimum")]), "chosen"),
         4.0 + SLOPE * 30.0,
     );
+}
+
+/// Of the line 4 kN + 0.01 kN/m u, u from 0 to 120 m, by hand: ∫ Y² = (5.2³ - 4³)/0.03 kN² m, and by
+/// the trapezoidal rule 2e-5 of that unit more. The mean is 4.6 kN.
+#[test]
+fn rational_powers_run() {
+    let found = run("rational_powers.fp", &[]);
+    let of = |found: &Certification, id: &str| {
+        let of = |value: &&fishplate::result::PairValue| value.section == "S2";
+        quantity(found, id).values.iter().find(of).expect("a value").measured
+    };
+    let dose = ((5.2_f64.powi(3) - 64.0) / 0.03 + 2e-5).sqrt();
+    for id in ["dose", "dose_by_power"] {
+        near(of(&found, id), dose);
+    }
+    assert_eq!(quantity(&found, "dose").unit, "kN*m^0.5");
+    near(of(&found, "third"), 4.6_f64.cbrt());
+    near(of(&found, "index"), 4.42 * 4.6_f64.powf(0.3));
+    near(of(&run("rational_powers.fp", &[("exponent", "0.5")]), "index"), 4.42 * 4.6_f64.sqrt());
+    // First^-2 of the root is 1/(4 kN), of S1 1/(1 kN).
+    near(quantity(&found, "root_first").values[0].measured, 1.0);
+    // A negative number has no root: no value, and the reason names the row.
+    let found = run("root_of_negative.fp", &[]);
+    assert!(quantity(&found, "nothing").values.iter().all(|value| value.section == "S3"));
+    let told = format!("{:?}", found.sections);
+    assert!(told.contains("NotFiniteResult") && told.contains("row: Some"), "{told}");
 }
 
 /// Lines of equal slope have equal variances: the probability is 1, and what is left are the means.

@@ -173,7 +173,7 @@ fn every_symbol_is_in_the_table_and_the_other_way_round() {
 fn factors_and_dimensions_are_those_of_the_table() {
     for (symbol, numerator, denominator, exponents) in TABLE {
         let unit = Unit::parse(symbol).unwrap_or_else(|error| panic!("{symbol}: {error:?}"));
-        assert_eq!(unit.dimension, Dimension(exponents), "{symbol}");
+        assert_eq!(unit.dimension, Dimension::of(exponents), "{symbol}");
         let factor = numerator / denominator;
         let near = |found: f64, wanted: f64| (found / wanted - 1.0).abs() < 5e-16;
         assert!(near(unit.to_si(1.0), factor), "{symbol}: {} is not {factor}", unit.to_si(1.0));

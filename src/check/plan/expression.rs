@@ -90,7 +90,7 @@ pub enum Kind {
     },
     Negative(Box<Expr>),
     Not(Box<Expr>),
-    Power(Box<Expr>, i8),
+    Power(Box<Expr>, f64),
     Binary(Operator, Box<Expr>, Box<Expr>),
     Call(&'static Function, Vec<Expr>),
     Filtered(Box<Expr>, Vec<Step>),

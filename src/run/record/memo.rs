@@ -25,7 +25,7 @@ enum Does {
     Constant(u64),
     Arithmetic(Compared<Operator>),
     Negative,
-    Power(i8),
+    Power(u64),
     Apply(&'static str),
     Shifted(u64, ExtentKey),
     Derivative { over_time: bool },
@@ -64,7 +64,7 @@ impl Does {
             Operation::Constant(expr) => Self::Constant(number(expr, known).ok()?.to_bits()),
             Operation::Arithmetic(operator) => Self::Arithmetic(Compared(*operator)),
             Operation::Negative => Self::Negative,
-            Operation::Power(exponent) => Self::Power(*exponent),
+            Operation::Power(exponent) => Self::Power(exponent.to_bits()),
             Operation::Apply(function) => Self::Apply(function.name),
             Operation::OverAxis(AxisOperation::Shifted(distance)) => {
                 Self::Shifted(number(distance, known).ok()?.to_bits(), place)

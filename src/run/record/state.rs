@@ -16,6 +16,7 @@ use crate::metrics::percentile::percentiles;
 use crate::metrics::sampling::Traits;
 use crate::result::{Reason, Subject};
 use crate::run::sections::{Extent, Known, chosen};
+use crate::units::raised;
 
 /// Value of a requested node.
 #[derive(Clone, Debug)]
@@ -399,7 +400,7 @@ impl State<'_> {
             Operation::Arithmetic(operator) => arithmetic(*operator, input(0)?, input(1)?)
                 .map_err(|reason| self.without_zeros(node.inputs[1], reason)),
             Operation::Negative => each(input(0)?, |value| -value),
-            Operation::Power(exponent) => each(input(0)?, |value| value.powi(i32::from(*exponent))),
+            Operation::Power(exponent) => each(input(0)?, |value| raised(value, *exponent)),
             Operation::Apply(function) => {
                 let inputs: Result<Vec<_>, _> =
                     node.inputs.iter().map(|&input| self.signal(input)).collect();

@@ -15,6 +15,7 @@ use crate::metrics::sampling::Traits;
 use crate::result::Reason;
 use crate::run::record::{Along, Samples, Signal, apply, arithmetic, each};
 use crate::run::sections::{Extent, Known};
+use crate::units::raised;
 
 /// Where the samples of two records meet. It is the same for all signals of the two.
 #[derive(Debug)]
@@ -248,7 +249,7 @@ impl Both<'_> {
             }
             Kind::Negative(signal) => each(&inner(signal)?, |value| -value),
             Kind::Power(signal, exponent) => {
-                each(&inner(signal)?, |value| value.powi(i32::from(*exponent)))
+                each(&inner(signal)?, |value| raised(value, *exponent))
             }
             Kind::Call(function, arguments) => {
                 let arguments = arguments.iter().map(inner).collect::<Result<Vec<_>, _>>()?;

@@ -304,7 +304,9 @@ fn in_words(rule: Rule) -> &'static str {
         of_quantities | of_limits => "`quantities` or `limits`",
         otherwise | kw_otherwise => "`otherwise`",
         not => "`not`",
-        compare | is | is_not | add | multiply | of | exponent | kw_and | kw_or => OPERATOR,
+        compare | is | is_not | add | multiply | of | exponent | square_cube | kw_and | kw_or => {
+            OPERATOR
+        }
         near | kw_near => "`near ... within ...`",
         kw_within => "`within` and a tolerance",
         a_factor_of => "`a factor of`",

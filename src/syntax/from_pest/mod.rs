@@ -340,7 +340,7 @@ mod tests {
             Node::Negative(inner) => format!("(neg {})", shown(inner)),
             Node::Not(inner) => format!("(not {})", shown(inner)),
             Node::Magnitude(inner) => format!("|{}|", shown(inner)),
-            Node::Power(inner, exponent) => format!("{}^{exponent}", shown(inner)),
+            Node::Power(inner, exponent) => format!("{}^{}", shown(inner), shown(exponent)),
             Node::Call(name, arguments) => format!("{}({})", name.node, all(arguments)),
             Node::Reduced(reducer, signal) => format!("{} of {}", shown(reducer), shown(signal)),
             Node::PlaceOf(signal, words) => {

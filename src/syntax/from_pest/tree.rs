@@ -164,13 +164,25 @@ fn signed(mut part: Parsed) -> Option<Phrase> {
         return Some(part.at(Node::Negative(inner)));
     }
     let base = primary(first.next()?)?;
-    let Some(exponent) = first.next() else { return Some(base) };
-    let exponent = match exponent.written() {
-        "²" => 2,
-        "³" => 3,
-        text => text.trim_start_matches('^').parse().ok()?,
-    };
+    let Some(mut exponent) = first.next() else { return Some(base) };
+    let exponent = Box::new(self::exponent(&mut exponent)?);
     Some(part.at(Node::Power(Box::new(base), exponent)))
+}
+
+/// What stands behind `^`, or `²`.
+fn exponent(part: &mut Parsed) -> Option<Phrase> {
+    let inner = part.next()?;
+    let value = match inner.rule {
+        Rule::minus => {
+            let positive = Box::new(exponent(part)?);
+            return Some(part.at(Node::Negative(positive)));
+        }
+        Rule::square_cube if inner.written() == "²" => 2.0,
+        Rule::square_cube => 3.0,
+        Rule::number => inner.written().parse().ok()?,
+        _ => return value(inner),
+    };
+    Some(inner.at(Node::Number(Number { value, unit: None })))
 }
 
 fn primary(mut part: Parsed) -> Option<Phrase> {

@@ -47,13 +47,21 @@ fn unit_end(text: &str) -> usize {
     }
 }
 
-/// The length of the power at the start of a text: `^-2`, `²`.
+/// The length of the power at the start of a text: `^-2`, `²`, `^1.5`, `^(1/3)`.
 fn power(text: &str) -> usize {
     if text.starts_with(['²', '³']) {
         return '²'.len_utf8();
     }
     let Some(exponent) = text.strip_prefix('^') else { return 0 };
-    let digits = exponent.strip_prefix('-').unwrap_or(exponent);
-    let sign = exponent.len() - digits.len();
-    if digits.starts_with(|c: char| c.is_ascii_digit()) { 1 + sign + 1 } else { 0 }
+    let sign = usize::from(exponent.starts_with('-'));
+    let number = number_end(&exponent[sign..]);
+    if exponent[sign..].starts_with(|c: char| c.is_ascii_digit()) {
+        return 1 + sign + number;
+    }
+    let within = |c: char| c.is_ascii_digit() || matches!(c, '-' | '/' | '.' | ' ');
+    let fraction = exponent.strip_prefix('(').map(|inner| inner.trim_start_matches(within));
+    match fraction.filter(|rest| rest.starts_with(')')) {
+        Some(rest) => text.len() - rest.len() + 1,
+        None => 0,
+    }
 }

@@ -131,7 +131,7 @@ mod tests {
     use crate::data::write::{FileColumn, Values, parquet};
     use crate::units::Dimension;
 
-    const FORCE: Dimension = Dimension([1, 1, -2, 0, 0, 0]);
+    const FORCE: Dimension = Dimension::of([1, 1, -2, 0, 0, 0]);
 
     fn wanted() -> [Wanted; 2] {
         [Wanted::new("time", Dimension::TIME), Wanted::new("Y", FORCE)]

@@ -224,7 +224,7 @@ mod tests {
     use crate::data::record::{Record, RecordSource};
     use crate::units::Dimension;
 
-    const FORCE: Dimension = Dimension([1, 1, -2, 0, 0, 0]);
+    const FORCE: Dimension = Dimension::of([1, 1, -2, 0, 0, 0]);
 
     /// Rows of the file: some row groups, and some blocks in the largest of them.
     const LENGTH: usize = 100_000;
