@@ -66,6 +66,7 @@ impl Checker<'_> {
             // Values of a signal, of one side or of other limits have no meaning before they are
             // used.
             Node::Percentile(_)
+            | Node::PercentileBy(_)
             | Node::Reduced(..)
             | Node::Over(..)
             | Node::Bound { .. }

@@ -60,6 +60,21 @@ impl Checker<'_> {
             Node::Number(number) => {
                 (Kind::Constant(Scalar::Number(number.value)), Type::Number(number.dimension()))
             }
+            Node::PercentileBy(_) => {
+                let phrase = self.with_percentile(phrase)?;
+                return self.expr(&phrase, scope);
+            }
+            Node::Reduced(of, _) | Node::Weighted(of, _)
+                if matches!(of.node, Node::PercentileBy(_)) =>
+            {
+                let found = Box::new(self.with_percentile(of)?);
+                let node = match &phrase.node {
+                    Node::Reduced(_, of) => Node::Reduced(found, of.clone()),
+                    Node::Weighted(_, by) => Node::Weighted(found, by.clone()),
+                    node => node.clone(),
+                };
+                return self.expr(&phrase.with(node), scope);
+            }
             Node::Percentile(percent) if scope.group.is_some() => {
                 return self.group_percentile(*percent, &span, scope);
             }
@@ -162,7 +177,7 @@ impl Checker<'_> {
                 return self.group_data(reducer, of, &span, scope);
             }
             Node::Bound { upper, confidence, of, bootstrap } => {
-                return self.group_bound((*upper, *confidence, *bootstrap), of, &span, scope);
+                return self.group_bound((*upper, confidence, *bootstrap), of, &span, scope);
             }
             Node::Share { of_sections, condition } => {
                 return self.group_share(*of_sections, condition, None, &span, scope);

@@ -28,13 +28,13 @@ impl Checker<'_> {
     /// An end of a confidence interval: `upper 95 % of std`.
     pub fn group_bound(
         &mut self,
-        (upper, confidence, bootstrap): (bool, f64, bool),
+        (upper, confidence, bootstrap): (bool, &Phrase, bool),
         of: &Phrase,
         span: &Origin,
         scope: &mut Scope,
     ) -> Option<Expr> {
         let Some(dimension) = scope.values() else { return self.no_values(span) };
-        self.confidence(confidence, span)?;
+        let confidence = self.confidence(confidence)?;
         let named = matches!(of.node, Node::Path(_) | Node::Percentile(_));
         let name = if named { reducer_name(of) } else { bare(&of.words()) };
         let estimate = if named && !self.names.estimates.contains_key(&name) {
@@ -110,9 +110,9 @@ impl Checker<'_> {
                 .help(help),
             );
         }
-        if let Some(share) = &written.confidence {
-            self.confidence(share.node, share)?;
-        } else if written.prediction {
+        let confidence =
+            if_written(written.confidence.as_ref().map(|written| self.confidence(written)))?;
+        if written.prediction && confidence.is_none() {
             let says = "a prediction bound needs a confidence level";
             let help =
                 "add `, confidence 99 %`; the fitted value itself is `regression over ... at ...`";
@@ -143,16 +143,19 @@ impl Checker<'_> {
             prediction: written.prediction,
             over,
             at,
-            confidence: written.confidence.as_ref().map(|share| share.node),
+            confidence,
             one_sided: written.one_sided,
             lower: written.lower,
         };
         scope.take(Taking::Fit(Box::new(fit)), dimension, span)
     }
 
-    fn confidence(&mut self, share: f64, at: &impl Located) -> Option<()> {
+    /// A confidence level, from 0 to 1.
+    fn confidence(&mut self, written: &Phrase) -> Option<f64> {
+        let (share, unit) = self.constant_phrase(written)?;
+        self.suits("confidence", unit == Dimension::ONE, "a share", unit, &written.place())?;
         if (LEAST_CONFIDENCE..1.0).contains(&share) {
-            return Some(());
+            return Some(share);
         }
         let help = if share > 0.0 && share < LEAST_CONFIDENCE {
             let [error, confidence] = [share, 1.0 - share].map(|share| rounded(100.0 * share));
@@ -161,6 +164,7 @@ impl Checker<'_> {
             "write it as a percentage: `95 %`".into()
         };
         let says = "a confidence level must be at least 50 % and below 100 %";
-        self.refuse(error("out-of-range", says, at).help(help))
+        let at = self.set_at(written);
+        self.refuse(error("out-of-range", says, written).also_if(at, "its value").help(help))
     }
 }

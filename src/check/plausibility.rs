@@ -237,11 +237,10 @@ impl Checker<'_> {
             return Some(Some(OverSections::Change));
         }
         let Some(slope) = slope else { return Some(Some(OverSections::Level { slope: None })) };
-        let text = normalised(&slope.value.text);
-        let numbers = text.split_once(" to ").and_then(|(least, most)| {
-            let (least, most) = (least.parse::<f64>().ok()?, most.parse::<f64>().ok()?);
-            (least < most && least.is_finite() && most.is_finite()).then_some((least, most))
-        });
+        let (least, most) = from_pest::range(&slope.value, self.problems)?;
+        let (least, most) = (self.constant_phrase(&least)?, self.constant_phrase(&most)?);
+        let plain = (least.1, most.1) == (Dimension::ONE, Dimension::ONE);
+        let numbers = (plain && least.0 < most.0).then_some((least.0, most.0));
         if numbers.is_none() {
             let says = "`slope` must be two numbers, the smaller one first";
             return self
@@ -340,8 +339,11 @@ impl Checker<'_> {
     /// `from 0.5, by 0.3, alike from 0.7`; the last part may be left out.
     fn exchanged(&mut self, field: &Field) -> Option<Exchanged> {
         let text = normalised(&field.value.text);
-        let number = |text: &str| {
-            text.trim().parse::<f64>().ok().filter(|number| *number > 0.0 && *number < 1.0)
+        let span = &field.value.span;
+        let mut number = |text: &str| {
+            let text = Text { text: text.into(), span: span.clone(), exact: false };
+            let (number, unit) = self.constant(&text)?;
+            (unit == Dimension::ONE && number > 0.0 && number < 1.0).then_some(number)
         };
         let parts = text.strip_prefix("from ").and_then(|rest| rest.split_once(", by "));
         let found = parts.and_then(|(least, rest)| {

@@ -2,6 +2,7 @@
 //! sections, is printed.
 
 use super::estimates::bare;
+use super::estimates::reducer_name;
 use super::groups::Grouped;
 use super::prelude::*;
 use crate::catalog::Statistic;
@@ -129,12 +130,19 @@ impl Checker<'_> {
         ))
     }
 
-    /// A choice parameter in place of an estimate stands for the statistic that it names.
+    /// A choice parameter in place of an estimate stands for the statistic that it names, and a
+    /// parameter of a percentile for its number.
     pub fn with_statistic(
         &mut self,
         mut name: At<String>,
         mut estimate: Phrase,
     ) -> (At<String>, Phrase) {
+        if let Node::PercentileBy(_) = estimate.node
+            && let Some(found) = self.with_percentile(&estimate)
+        {
+            name.node = reducer_name(&found);
+            return (name, found);
+        }
         let word = name.node.clone();
         let named = Statistic::named(&word).is_some() || self.names.estimates.contains_key(&word);
         let parameter = self.names.parameter_blocks.contains_key(&word);

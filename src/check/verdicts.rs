@@ -251,7 +251,9 @@ impl Checker<'_> {
     fn how_many(&mut self, count: &Phrase, there: usize, what: &str) -> Option<usize> {
         let (wanted, dimension) = self.constant_phrase(count)?;
         if dimension != Dimension::ONE || !is_whole(wanted, 1.0..=f64::INFINITY) {
-            return self.refuse(error("not-a-count", "expected a whole number above zero", count));
+            let at = self.set_at(count);
+            let problem = error("not-a-count", "expected a whole number above zero", count);
+            return self.refuse(problem.also_if(at, "its value"));
         }
         let wanted = wanted as usize;
         if wanted > there && !self.problems.any_error() {

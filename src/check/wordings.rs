@@ -218,9 +218,14 @@ impl Checker<'_> {
             .first()
             .map_or_else(|| span.clone(), |first| first.to(&part[part.len() - 1], ()).place());
         match part {
-            [At { node: Item::Word(word), .. }, value]
-            | [value @ At { node: Item::Value(_), .. }, At { node: Item::Word(word), .. }] => {
-                if let Some(index) = form.numbers.iter().position(|option| option.name == word) {
+            [one, other] => {
+                let named = |item: &At<Item>| {
+                    let word = item.node.word()?;
+                    form.numbers.iter().position(|option| option.name == word)
+                };
+                let found = named(one).map(|index| (index, other));
+                if let Some((index, value)) = found.or_else(|| Some((named(other)?, one))) {
+                    let word = form.numbers[index].name;
                     self.note(filled.option_said(form.numbers[index].name, &place))?;
                     let (number, dimension) = self.constant_phrase(&item_phrase(value))?;
                     let suits = form.numbers[index].with_unit || dimension == Dimension::ONE;

@@ -138,6 +138,8 @@ pub enum Node {
     Number(Number),
     /// `p99.85`: the value below which 99.85 % of the samples lie.
     Percentile(f64),
+    /// `percentile level`: the same by a constant.
+    PercentileBy(Box<Phrase>),
     /// `vehicle.category`, `Y`, `LP20`.
     Path(String),
     /// `"series 2"`, on the right of a comparison.
@@ -168,8 +170,8 @@ pub enum Node {
     /// `upper 95 % of std`: an end of the confidence interval of an estimate.
     Bound {
         upper: bool,
-        /// Confidence level, from 0 to 1.
-        confidence: f64,
+        /// Confidence level, from 0 to 1: a constant.
+        confidence: Box<Phrase>,
         of: Box<Phrase>,
         bootstrap: bool,
     },
@@ -197,7 +199,7 @@ pub struct Fit {
     pub over: Vec<Phrase>,
     pub at: Vec<Phrase>,
     /// Confidence level of the bound; without one, the fitted value itself.
-    pub confidence: Option<At<f64>>,
+    pub confidence: Option<Phrase>,
     pub one_sided: bool,
     pub lower: bool,
 }

@@ -232,6 +232,7 @@ pub(super) fn joins(rule: Rule) -> bool {
             | kw_over
             | kw_confidence
             | kw_share
+            | kw_percentile
             | kw_weighted
             | kw_by
             | kw_holds
@@ -319,6 +320,8 @@ fn in_words(rule: Rule) -> &'static str {
         through | kw_through => "`through` and a filter",
         quantity | number => "a number",
         percentile => "a percentile such as `p99.85`",
+        of_percentile | percentile_by | kw_percentile => "`percentile` and a number",
+        constant => "a number or a parameter",
         name | path | label | plain => "a name",
         unit | any_unit | coordinate_unit => "a unit",
         zone => "a zone",

@@ -333,6 +333,7 @@ mod tests {
                 format!("{value:.11e}").parse::<f64>().expect("a number").to_string()
             }
             Node::Percentile(percent) => format!("p{percent}"),
+            Node::PercentileBy(of) => format!("(percentile {})", shown(of)),
             Node::Path(path) => path.clone(),
             Node::Binary(operator, left, right) => {
                 format!("({operator:?} {} {})", shown(left), shown(right))

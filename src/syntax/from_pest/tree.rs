@@ -44,6 +44,8 @@ fn value(mut part: Parsed) -> Option<Phrase> {
         Rule::magnitude => Node::Magnitude(Box::new(sum(part.next()?)?)),
         Rule::quantity => Node::Number(number(&mut part)?),
         Rule::bound_of => bound_of(&mut part)?,
+        Rule::constant => return value(part.next()?),
+        Rule::percentile_by => Node::PercentileBy(Box::new(value(part.next()?)?)),
         Rule::percentile => Node::Percentile(part.written().trim_start_matches('p').parse().ok()?),
         _ => Node::Path(part.written().to_string()),
     };
@@ -214,6 +216,13 @@ fn without_suffix(mut part: Parsed) -> Option<Phrase> {
             let name = part.next()?.named();
             Node::Call(name, part.by_ref().map(either).collect::<Option<Vec<_>>>()?)
         }
+        Rule::of_percentile => {
+            let percentile = value(part.next()?)?;
+            match part.find(|part| part.rule != Rule::of) {
+                Some(of) => Node::Reduced(Box::new(percentile), Box::new(signed(of)?)),
+                None => return Some(percentile),
+            }
+        }
         Rule::reduced => {
             let mut inner = part.by_ref().filter(|part| part.rule != Rule::of);
             let reducer = value(inner.next()?)?;
@@ -274,7 +283,7 @@ fn weighted(of: Phrase, mut part: Parsed) -> Option<Phrase> {
 fn bound_of(part: &mut Parsed) -> Option<Node> {
     let mut inner = part.filter(|part| part.rule != Rule::of);
     let upper = inner.next()?.written() == "upper";
-    let confidence = number(&mut inner.next()?)?.value;
+    let confidence = Box::new(value(inner.next()?)?);
     let (mut of, mut bootstrap) = (value(inner.next()?)?, false);
     for part in inner {
         match part.rule {
@@ -302,11 +311,7 @@ fn fit(part: &mut Parsed) -> Option<Fit> {
             _ => {
                 let mut option = part.next()?;
                 match option.rule {
-                    Rule::confidence => {
-                        let mut written = option.next()?;
-                        let share = number(&mut written)?.value;
-                        fit.confidence = Some(written.at(share));
-                    }
+                    Rule::confidence => fit.confidence = Some(value(option.next()?)?),
                     Rule::tails => fit.one_sided = option.written().starts_with("one"),
                     _ => fit.lower = option.written() == "lower",
                 }
