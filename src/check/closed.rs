@@ -96,7 +96,8 @@ impl Checker<'_> {
             Node::Negative(inner)
             | Node::Not(inner)
             | Node::Magnitude(inner)
-            | Node::Power(inner, _) => of(inner),
+            | Node::Power(inner, _)
+            | Node::Table { of: inner, .. } => of(inner),
             Node::Call(name, _) if matches!(name.node.as_str(), "simulated" | "measured") => {
                 Meaning::Open
             }

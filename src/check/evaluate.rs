@@ -6,7 +6,6 @@ use super::possible::possible;
 use super::prelude::*;
 use super::values::{Values, leaf};
 use crate::result::Reason;
-use crate::units::raised;
 
 /// The value of an expression. Where names have no value, the result is the value that the
 /// expression has for every value of them, if there is one.
@@ -27,7 +26,13 @@ fn exactly(expr: &Expr, values: &dyn Values) -> Result<Scalar, Reason> {
     let result = match &expr.kind {
         Kind::Negative(inner) => Scalar::Number(-number(inner, values)?),
         Kind::Not(inner) => Scalar::Flag(!flag(inner, values)?),
-        Kind::Power(inner, exponent) => Scalar::Number(raised(number(inner, values)?, *exponent)),
+        Kind::Mapped(inner, mapping) => {
+            let found = mapping.of(number(inner, values)?);
+            if let (true, Mapping::Table(_)) = (found.is_nan(), mapping) {
+                return Err(Reason::OutsideTable { of: words(inner), row: None, at: None });
+            }
+            Scalar::Number(found)
+        }
         Kind::Binary(operator, left, right) => binary(*operator, left, right, values)?,
         Kind::Call(function, arguments) => {
             let arguments = arguments
@@ -146,7 +151,7 @@ pub fn shape(expr: &Expr) -> String {
         Kind::Channel { column, .. } => format!("channel {column}"),
         Kind::Negative(_) => "-".into(),
         Kind::Not(_) => "not".into(),
-        Kind::Power(_, exponent) => format!("^{exponent}"),
+        Kind::Mapped(_, mapping) => mapping.to_string(),
         Kind::Binary(operator, ..) => format!("{operator:?}"),
         Kind::Call(function, _) => function.name.into(),
         Kind::Filtered(_, steps) => format!("{steps:?}"),

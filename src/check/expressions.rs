@@ -10,7 +10,7 @@ use crate::syntax::phrase::Number;
 
 impl Type {
     /// A number, or a number for each sample, of another dimension.
-    fn of_dimension(&self, dimension: Dimension) -> Self {
+    pub fn of_dimension(&self, dimension: Dimension) -> Self {
         match *self {
             Self::Samples { track, .. } => Self::Samples { dimension, track },
             _ => Self::Number(dimension),
@@ -60,21 +60,8 @@ impl Checker<'_> {
             Node::Number(number) => {
                 (Kind::Constant(Scalar::Number(number.value)), Type::Number(number.dimension()))
             }
-            Node::PercentileBy(_) => {
-                let phrase = self.with_percentile(phrase)?;
-                return self.expr(&phrase, scope);
-            }
-            Node::Reduced(of, _) | Node::Weighted(of, _)
-                if matches!(of.node, Node::PercentileBy(_)) =>
-            {
-                let found = Box::new(self.with_percentile(of)?);
-                let node = match &phrase.node {
-                    Node::Reduced(_, of) => Node::Reduced(found, of.clone()),
-                    Node::Weighted(_, by) => Node::Weighted(found, by.clone()),
-                    node => node.clone(),
-                };
-                return self.expr(&phrase.with(node), scope);
-            }
+            Node::PercentileBy(_) => return self.by_percentile(phrase, scope),
+            node if of_percentile(node) => return self.by_percentile(phrase, scope),
             Node::Percentile(percent) if scope.group.is_some() => {
                 return self.group_percentile(*percent, &span, scope);
             }
@@ -108,6 +95,9 @@ impl Checker<'_> {
             }
             Node::Power(inner, exponent) => {
                 return self.power(inner, exponent, span, scope);
+            }
+            Node::Table { of, points, held } => {
+                return self.table(of, points, *held, span, scope);
             }
             Node::Binary(operator @ (Operator::Is | Operator::IsNot), left, right) => {
                 return self.equality(*operator, left, right, &span, scope);
@@ -228,7 +218,8 @@ impl Checker<'_> {
             ));
         };
         let ty = base.ty.of_dimension(dimension);
-        self.folded(Expr { kind: Kind::Power(Box::new(base), value), ty, span }, scope)
+        let kind = Kind::Mapped(Box::new(base), Mapping::Power(value));
+        self.folded(Expr { kind, ty, span }, scope)
     }
 
     /// Arithmetic, a comparison of numbers, or conditions that are joined.
@@ -435,6 +426,12 @@ pub fn unlike(done: &str, left: &Expr, right: &Expr) -> Problem {
         .also(&left.span, a)
 }
 
+/// Whether a percentile by a constant is taken of something: `percentile level of Q`.
+fn of_percentile(node: &Node) -> bool {
+    let (Node::Reduced(of, _) | Node::Weighted(of, _)) = node else { return false };
+    matches!(of.node, Node::PercentileBy(_))
+}
+
 /// The place and the words of a whole field.
 pub fn whole(text: &Text) -> Origin {
     Origin { span: text.span.clone(), words: normalised(&text.text).into() }
@@ -453,6 +450,7 @@ fn computed_from_samples(node: &Node) -> bool {
         | Node::Negative(_)
         | Node::Magnitude(_)
         | Node::Power(..)
+        | Node::Table { .. }
         | Node::Call(..)
         | Node::Through(..)
         | Node::Reduced(..)

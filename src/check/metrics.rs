@@ -419,6 +419,7 @@ impl Checker<'_> {
             | Node::Negative(inner)
             | Node::Magnitude(inner)
             | Node::Power(inner, _)
+            | Node::Table { of: inner, .. }
             | Node::Through(inner, _) => any(inner),
             Node::Call(_, arguments) => arguments.iter().any(any),
             Node::Cases(arms, otherwise) => {

@@ -46,6 +46,7 @@ mod scope;
 mod signals;
 mod slips;
 mod steps;
+mod tables;
 mod transfer;
 pub mod values;
 mod verdicts;

@@ -6,6 +6,7 @@ use super::declared::NOT_STATED;
 use super::evaluate::words;
 use super::names::ParameterDef;
 use super::prelude::*;
+use crate::units::number::significant;
 
 impl Checker<'_> {
     /// The parameter of a name. It is checked when it is first used, as its default may use
@@ -287,5 +288,38 @@ impl Checker<'_> {
             problem!("not-constant", &expr, "`{}` is not a constant", words(&expr))
                 .help("write a number with its unit, a parameter or an expression of these"),
         )
+    }
+
+    /// A percentile by a constant, as one by its number: `percentile level` with 95 % as `p95`.
+    pub fn with_percentile(&mut self, phrase: &Phrase) -> Option<Phrase> {
+        let Node::PercentileBy(of) = &phrase.node else { return Some(phrase.clone()) };
+        let (share, dimension) = self.constant_phrase(of)?;
+        self.suits("percentile", dimension == Dimension::ONE, "a share", dimension, &of.place())?;
+        if (0.0..=1.0).contains(&share) {
+            // As it is written: 99.85 % and not what its share becomes by rounding.
+            return Some(phrase.with(Node::Percentile(significant(100.0 * share, 12))));
+        }
+        let says = "a percentile must be from 0 % to 100 %";
+        let problem = error("out-of-range", says, &**of).also_if(self.set_at(of), "its value");
+        self.refuse(problem.help("write it as a percentage: `99.85 %`"))
+    }
+
+    /// Where the value of a parameter is set, if the phrase is one.
+    pub fn set_at(&self, phrase: &Phrase) -> Option<Span> {
+        let Node::Path(name) = &phrase.node else { return None };
+        let block = self.names.parameter_blocks.get(name)?;
+        let given = self.overrides.get(name).map(|given| given.text.span.clone());
+        given.or_else(|| block.field("default").map(Located::place))
+    }
+
+    /// An expression in which a percentile by a constant stands first: `percentile level of Q`.
+    pub fn by_percentile(&mut self, phrase: &Phrase, scope: &mut Scope) -> Option<Expr> {
+        let mut found = |of: &Phrase| self.with_percentile(of).map(Box::new);
+        let node = match &phrase.node {
+            Node::Reduced(by, of) => Node::Reduced(found(by)?, of.clone()),
+            Node::Weighted(of, by) => Node::Weighted(found(of)?, by.clone()),
+            _ => found(phrase)?.node,
+        };
+        self.expr(&phrase.with(node), scope)
     }
 }

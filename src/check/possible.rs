@@ -8,6 +8,7 @@
 use super::prelude::*;
 use super::values::{Values, leaf};
 use crate::catalog::Function;
+use crate::metrics::statistics::ends;
 use crate::units::raised;
 
 /// All values that an expression may have.
@@ -105,7 +106,8 @@ pub fn possible(expr: &Expr, values: &dyn Values) -> Possible {
             let (can_hold, can_fail) = of(inner).holds();
             Possible::Flag { can_hold: can_fail, can_fail: can_hold }
         }
-        Kind::Power(inner, exponent) => power(of(inner).bounds(), *exponent),
+        Kind::Mapped(inner, Mapping::Power(exponent)) => power(of(inner).bounds(), *exponent),
+        Kind::Mapped(inner, Mapping::Table(table)) => in_table(of(inner).bounds(), table),
         Kind::Binary(Operator::And, left, right) => {
             let ((a, b), (c, d)) = (of(left).holds(), of(right).holds());
             Possible::Flag { can_hold: a && c, can_fail: b || d }
@@ -198,6 +200,17 @@ fn binary(operator: Operator, left: (f64, f64), right: (f64, f64)) -> Possible {
         Operator::GreaterEqual => flag(b >= c, a < d),
         Operator::Is | Operator::IsNot | Operator::And | Operator::Or => flag(true, true),
     }
+}
+
+/// The values between two numbers: those at both of them and at the points between.
+fn in_table((low, high): (f64, f64), table: &Table) -> Possible {
+    let (first, last) = table.ends();
+    if !(table.held || first <= low && high <= last) {
+        return interval(f64::NAN, f64::NAN);
+    }
+    let between = table.points.iter().filter(|(x, _)| (low..=high).contains(x)).map(|(_, y)| *y);
+    let (least, most) = ends(between.chain([table.at(low), table.at(high)]));
+    interval(least, most)
 }
 
 fn power((low, high): (f64, f64), exponent: f64) -> Possible {

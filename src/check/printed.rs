@@ -36,7 +36,7 @@ impl Checker<'_> {
         let datum = match &expr.kind {
             Kind::Column(index) => self.names.columns.get(*index)?,
             Kind::Vehicle(index) => self.names.vehicle.get(*index)?,
-            Kind::Negative(inner) | Kind::Power(inner, _) => {
+            Kind::Negative(inner) | Kind::Mapped(inner, _) => {
                 return self.datum_unit(inner, dimension);
             }
             Kind::Binary(_, left, right) => {

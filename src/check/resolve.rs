@@ -7,7 +7,6 @@ use super::prelude::*;
 use super::scope::Reduce;
 use super::steps::after;
 use crate::catalog::{METRICS, MetricEntry, REDUCERS, Reducer, STATISTICS, Statistic};
-use crate::units::number::significant;
 
 /// The meaning of a statistic's name in the bound of a limit, and how to limit an expression of
 /// values instead.
@@ -64,28 +63,6 @@ impl Checker<'_> {
             at,
             "a percentile must be from 0 to 100, this is {percent}"
         ))
-    }
-
-    /// A percentile by a constant, as one by its number: `percentile level` with 95 % as `p95`.
-    pub fn with_percentile(&mut self, phrase: &Phrase) -> Option<Phrase> {
-        let Node::PercentileBy(of) = &phrase.node else { return Some(phrase.clone()) };
-        let (share, dimension) = self.constant_phrase(of)?;
-        self.suits("percentile", dimension == Dimension::ONE, "a share", dimension, &of.place())?;
-        if (0.0..=1.0).contains(&share) {
-            // As it is written: 99.85 % and not what its share becomes by rounding.
-            return Some(phrase.with(Node::Percentile(significant(100.0 * share, 12))));
-        }
-        let says = "a percentile must be from 0 % to 100 %";
-        let problem = error("out-of-range", says, &**of).also_if(self.set_at(of), "its value");
-        self.refuse(problem.help("write it as a percentage: `99.85 %`"))
-    }
-
-    /// Where the value of a parameter is set, if the phrase is one.
-    pub fn set_at(&self, phrase: &Phrase) -> Option<Span> {
-        let Node::Path(name) = &phrase.node else { return None };
-        let block = self.names.parameter_blocks.get(name)?;
-        let given = self.overrides.get(name).map(|given| given.text.span.clone());
-        given.or_else(|| block.field("default").map(Located::place))
     }
 
     /// The reducer of `NAME of signal`.

@@ -19,7 +19,8 @@ use std::sync::Arc;
 
 use crate::catalog::{Function, Metric, Reducer};
 use crate::check::plan::{
-    AxisOperation, Decision, Evaluation, Expr, InputSide, Limit, Operator, Report, StepSpec,
+    AxisOperation, Decision, Evaluation, Expr, InputSide, Limit, Mapping, Operator, Report,
+    StepSpec,
 };
 use crate::source::Span;
 use crate::units::Dimension;
@@ -115,7 +116,8 @@ pub enum Operation {
     Constant(Expr),
     Arithmetic(Operator),
     Negative,
-    Power(f64),
+    /// A constant power, or the value in a table.
+    Mapped(Mapping),
     Apply(&'static Function),
     /// Shifted, differentiated or integrated along the axis.
     OverAxis(AxisOperation),
@@ -153,7 +155,7 @@ impl Operation {
             Self::Constant(_)
             | Self::Arithmetic(_)
             | Self::Negative
-            | Self::Power(_)
+            | Self::Mapped(_)
             | Self::Apply(_)
             | Self::OverAxis(_)
             | Self::Level

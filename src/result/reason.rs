@@ -161,6 +161,13 @@ pub enum Reason {
         row: Option<usize>,
         at: Option<f64>,
     },
+    /// A number, or a sample in a row of the file or at a place of the axis, is not between the
+    /// first and the last point of its table.
+    OutsideTable {
+        of: String,
+        row: Option<usize>,
+        at: Option<f64>,
+    },
     /// Samples of channels that others are divided by; where the first of them is.
     DividedByZero {
         channels: Vec<String>,
@@ -682,6 +689,7 @@ impl Reason {
         match self {
             Self::NotFiniteSample { .. }
             | Self::NotFiniteResult { .. }
+            | Self::OutsideTable { row: Some(_), .. }
             | Self::DividedByZero { .. } => true,
             Self::About { reason, .. } => reason.is_of_samples(),
             Self::Both { first, second } => first.is_of_samples() || second.is_of_samples(),

@@ -150,6 +150,12 @@ pub enum Node {
     Magnitude(Box<Phrase>),
     /// `a^2`, `a²`, `a^0.3`, `a^(1/3)`: the exponent is constant.
     Power(Box<Phrase>, Box<Phrase>),
+    /// `table radius: (300 m, 1.2), (600 m, 1), held`: linear between constant points.
+    Table {
+        of: Box<Phrase>,
+        points: Vec<(Phrase, Phrase)>,
+        held: bool,
+    },
     /// `name(a, b)`, and `larger of a, b` as `larger(a, b)`.
     Call(At<String>, Vec<Phrase>),
     /// `mean of Q near 50 kN within 10 kN`, or `within a factor of 2`.

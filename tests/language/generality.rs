@@ -15,7 +15,7 @@ use fishplate::check::{Override, Overrides, family, plan::SetBy};
 use fishplate::data::Campaign;
 use fishplate::library;
 use fishplate::problem::Problems;
-use fishplate::result::{Certification, QuantityResult, StatisticResult, Verdict};
+use fishplate::result::{Certification, PairValue, QuantityResult, StatisticResult, Verdict};
 use fishplate::run::{Settings, Shifts, evaluate};
 use fishplate::source::Source;
 use fishplate::syntax::document::Text;
@@ -254,7 +254,7 @@ fn spatial_filters_and_sliding_windows_run() {
 fn values_of_sliding_windows_run() {
     let found = run("sliding_values.fp", &[]);
     let measured = |found: &Certification, id: &str| {
-        let of = |value: &&fishplate::result::PairValue| value.section == "S2";
+        let of = |value: &&PairValue| value.section == "S2";
         quantity(found, id).values.iter().find(of).expect("a value").measured
     };
     near(measured(&found, "throughout"), 4.0 + SLOPE * 118.4);
@@ -280,8 +280,9 @@ fn values_of_sliding_windows_run() {
 fn rational_powers_run() {
     let found = run("rational_powers.fp", &[]);
     let of = |found: &Certification, id: &str| {
-        let of = |value: &&fishplate::result::PairValue| value.section == "S2";
-        quantity(found, id).values.iter().find(of).expect("a value").measured
+        let of = |value: &&PairValue| value.section == "S2";
+        let value = quantity(found, id).values.iter().find(of).expect("a value");
+        value.measured.or(Some(value.difference))
     };
     let dose = ((5.2_f64.powi(3) - 64.0) / 0.03 + 2e-5).sqrt();
     for id in ["dose", "dose_by_power"] {
@@ -292,12 +293,64 @@ fn rational_powers_run() {
     near(of(&found, "index"), 4.42 * 4.6_f64.powf(0.3));
     near(of(&run("rational_powers.fp", &[("exponent", "0.5")]), "index"), 4.42 * 4.6_f64.sqrt());
     // First^-2 of the root is 1/(4 kN), of S1 1/(1 kN).
-    near(quantity(&found, "root_first").values[0].measured, 1.0);
+    near(Some(quantity(&found, "root_first").values[0].difference), 1.0);
     // A negative number has no root: no value, and the reason names the row.
     let found = run("root_of_negative.fp", &[]);
     assert!(quantity(&found, "nothing").values.iter().all(|value| value.section == "S3"));
     let told = format!("{:?}", found.sections);
     assert!(told.contains("NotFiniteResult") && told.contains("row: Some"), "{told}");
+}
+
+/// Percentiles of a line over 1201 samples by hand; of the windows those of `windows` lie 0.75 · 19
+/// samples behind their starts. Confidence and percentile of pairs come from the same pairs as
+/// `upper 90 % of mean` and `p75`.
+#[test]
+fn a_parameter_stands_for_a_number() {
+    let found = run("parameters_as_numbers.fp", &[]);
+    let of = |found: &Certification, id: &str| {
+        let of = |value: &&PairValue| value.section == "S2";
+        let value = quantity(found, id).values.iter().find(of).expect("a value");
+        value.measured.or(Some(value.difference))
+    };
+    let percentile = |offset: f64, percent: f64| offset + SLOPE * (END - START) * percent / 100.0;
+    near(of(&found, "extreme"), percentile(4.0, 99.85));
+    near(of(&found, "named"), percentile(4.0, 0.15));
+    let median = run("parameters_as_numbers.fp", &[("level", "50 %"), ("share", "50 %")]);
+    near(of(&median, "extreme"), percentile(4.0, 50.0));
+    let names = |found: &Certification| -> Vec<String> {
+        let statistics = &quantity(found, "extreme").statistics;
+        statistics.iter().map(|statistic| statistic.name.to_string()).collect()
+    };
+    assert!(names(&found).contains(&"p75".to_string()), "{:?}", names(&found));
+    assert!(names(&median).contains(&"p50".to_string()), "{:?}", names(&median));
+    let value = |found: &Certification, name: &str| statistic(found, "extreme", name, "all").value;
+    // Differences 0.5, 1, -1 and -2: p75 is 0.625. Student's t(0.9, 3) = 1.637744; with the
+    // standard deviation 1.3149778 of four, the end is -0.375 + 0.657489 * 1.637744.
+    near(value(&found, "p75"), 0.625);
+    let upper = value(&found, "upper confidence of mean").expect("an end");
+    let deviation = deviation(&[0.5, 1.0, -1.0, -2.0], 1.0);
+    assert!((upper - (-0.375 + deviation / 2.0 * 1.637_744_353_7)).abs() < 1e-7, "{upper}");
+}
+
+/// By hand: limits at 72 and 90 km/h between 60 and 100 km/h; the travel between two points.
+#[test]
+fn tables_run() {
+    let found = run("tables.fp", &[]);
+    let travelled = quantity(&found, "travelled").values.iter().find(|value| value.section == "S2");
+    let (first, last) = (4.0 / 4.4 * 2.0, 8.0 + 0.2 / 25.0 * 50.0);
+    near(travelled.expect("a value").measured, last - first);
+    for (id, slow, fast) in [("difference", 3.2, 5.0), ("held", 3.0, 5.0)] {
+        for value in &quantity(&found, id).values {
+            let speed =
+                SECTIONS.iter().find(|section| section.name == value.section).expect("one").speed;
+            let limit = value.limit;
+            near(limit, if speed < 80.0 { slow } else { fast });
+        }
+    }
+    // A sample outside the points has no value, and the reason says where.
+    let found = run("tables.fp", &[("first_force", "0.9 kN")]);
+    let told = format!("{:?}", found.sections);
+    assert!(told.contains("OutsideTable") && told.contains("row: Some"), "{told}");
 }
 
 /// Lines of equal slope have equal variances: the probability is 1, and what is left are the means.

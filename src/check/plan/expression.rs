@@ -1,12 +1,13 @@
 //! Checked expressions: over numbers, words and conditions, and over the samples of records.
 
+use std::fmt;
 use std::ops::Deref;
 use std::sync::Arc;
 
 use super::{Scalar, Side, Step};
 use crate::catalog::{Function, Reducer};
 use crate::source::{Located, Span};
-use crate::units::{Dimension, Unit};
+use crate::units::{Dimension, Unit, raised};
 
 pub use crate::syntax::phrase::Operator;
 
@@ -90,7 +91,8 @@ pub enum Kind {
     },
     Negative(Box<Expr>),
     Not(Box<Expr>),
-    Power(Box<Expr>, f64),
+    /// A constant power of a number or of samples, or their value in a table.
+    Mapped(Box<Expr>, Mapping),
     Binary(Operator, Box<Expr>, Box<Expr>),
     Call(&'static Function, Vec<Expr>),
     Filtered(Box<Expr>, Vec<Step>),
@@ -149,7 +151,7 @@ impl Expr {
         match &self.kind {
             Kind::Negative(inner)
             | Kind::Not(inner)
-            | Kind::Power(inner, _)
+            | Kind::Mapped(inner, _)
             | Kind::Filtered(inner, _)
             | Kind::Level(_, inner) => vec![inner],
             Kind::OverAxis(AxisOperation::Shifted(distance), inner) => vec![distance, inner],
@@ -181,5 +183,63 @@ impl Expr {
     /// Whether a part, or the whole, satisfies a test.
     pub fn any(&self, test: &dyn Fn(&Expr) -> bool) -> bool {
         self.find(test).is_some()
+    }
+}
+
+/// A function of one number with constants of its own.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Mapping {
+    /// The exponent.
+    Power(f64),
+    Table(Table),
+}
+
+/// Two points or more with ascending x; in SI.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    pub points: Vec<(f64, f64)>,
+    /// Whether the values of the ends hold outside.
+    pub held: bool,
+}
+
+impl Mapping {
+    /// The value of a number; not a number where there is none.
+    pub fn of(&self, x: f64) -> f64 {
+        match self {
+            Self::Power(exponent) => raised(x, *exponent),
+            Self::Table(table) => table.at(x),
+        }
+    }
+}
+
+impl Table {
+    /// Linear between two points; not a number outside, unless the ends are held.
+    pub fn at(&self, x: f64) -> f64 {
+        let (first, last) = self.ends();
+        let x = if self.held { x.clamp(first, last) } else { x };
+        let inside = (first..=last).contains(&x);
+        let beyond = self.points.partition_point(|(at, _)| *at <= x);
+        match (inside, self.points.get(beyond.wrapping_sub(1)), self.points.get(beyond)) {
+            (true, Some((x0, y0)), Some((x1, y1))) => y0 + (y1 - y0) * ((x - x0) / (x1 - x0)),
+            (true, Some((_, y)), None) => *y,
+            _ => f64::NAN,
+        }
+    }
+
+    /// The first and the last x.
+    pub fn ends(&self) -> (f64, f64) {
+        let x = |point: Option<&(f64, f64)>| point.map_or(f64::NAN, |(x, _)| *x);
+        (x(self.points.first()), x(self.points.last()))
+    }
+}
+
+impl fmt::Display for Mapping {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Power(exponent) => write!(f, "^{exponent}"),
+            Self::Table(Table { points, held }) => {
+                write!(f, "table{points:?}{}", if *held { ", held" } else { "" })
+            }
+        }
     }
 }

@@ -3,7 +3,7 @@
 use super::super::{NodeId, Operation};
 use super::Builder;
 use crate::check::evaluate::{shape, words};
-use crate::check::plan::{AxisOperation, Expr, Kind, Operator, Step, StepSpec};
+use crate::check::plan::{AxisOperation, Expr, Kind, Mapping, Operator, Step, StepSpec};
 use crate::source::Span;
 
 impl Builder {
@@ -46,16 +46,19 @@ impl Builder {
                     "negative".into(),
                 )
             }
-            Kind::Power(inner, exponent) => {
+            Kind::Mapped(inner, mapping) => {
                 let inner = self.signal(inner);
-                let label = format!("{}^{exponent}", self.grouped(inner));
+                let label = match mapping {
+                    Mapping::Power(exponent) => format!("{}^{exponent}", self.grouped(inner)),
+                    Mapping::Table(_) => format!("table {}", self.grouped(inner)),
+                };
                 self.add(
-                    Operation::Power(*exponent),
+                    Operation::Mapped(mapping.clone()),
                     vec![inner],
                     dimension,
                     from,
                     label,
-                    format!("power {exponent}"),
+                    format!("map {mapping}"),
                 )
             }
             Kind::Call(function, arguments) => {
@@ -155,7 +158,7 @@ impl Builder {
     /// The name, in parentheses where it has several parts.
     fn grouped(&self, node: NodeId) -> String {
         match self.nodes[node].operation {
-            Operation::Arithmetic(_) | Operation::Negative | Operation::Power(_) => {
+            Operation::Arithmetic(_) | Operation::Negative | Operation::Mapped(_) => {
                 format!("({})", self.named(node))
             }
             _ => self.named(node),

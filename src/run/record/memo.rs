@@ -9,7 +9,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use super::signal::Signal;
 use crate::catalog::Reducer;
 use crate::check::evaluate::number;
-use crate::check::plan::{AxisOperation, Operator, Plan, StepSpec};
+use crate::check::plan::{AxisOperation, Mapping, Operator, Plan, StepSpec};
 use crate::graph::{Graph, Node, Operation};
 use crate::metrics::percentile::Method;
 use crate::run::sections::{Known, chosen};
@@ -25,7 +25,7 @@ enum Does {
     Constant(u64),
     Arithmetic(Compared<Operator>),
     Negative,
-    Power(u64),
+    Mapped(Compared<Mapping>),
     Apply(&'static str),
     Shifted(u64, ExtentKey),
     Derivative { over_time: bool },
@@ -64,7 +64,7 @@ impl Does {
             Operation::Constant(expr) => Self::Constant(number(expr, known).ok()?.to_bits()),
             Operation::Arithmetic(operator) => Self::Arithmetic(Compared(*operator)),
             Operation::Negative => Self::Negative,
-            Operation::Power(exponent) => Self::Power(exponent.to_bits()),
+            Operation::Mapped(mapping) => Self::Mapped(Compared(mapping.clone())),
             Operation::Apply(function) => Self::Apply(function.name),
             Operation::OverAxis(AxisOperation::Shifted(distance)) => {
                 Self::Shifted(number(distance, known).ok()?.to_bits(), place)

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::catalog::InWindow;
 use crate::check::evaluate::number;
-use crate::check::plan::{AxisOperation, Operator, StepSpec};
+use crate::check::plan::{AxisOperation, Mapping, Operator, StepSpec};
 use crate::check::values::Values;
 use crate::metrics::filter::Filter;
 use crate::metrics::percentile::Method;
@@ -333,6 +333,26 @@ pub fn each(of: &Signal, run: impl Fn(f64) -> f64) -> Result<Signal, Reason> {
             finite(samples, samples.values.iter().map(|value| run(*value)).collect())
         }
     }
+}
+
+/// A power or the value in a table, of each sample. `of` names the signal.
+///
+/// # Errors
+/// As [`arithmetic`]; a sample outside the table.
+pub fn mapped(
+    signal: &Signal,
+    mapping: &Mapping,
+    of: impl Fn() -> String,
+) -> Result<Signal, Reason> {
+    each(signal, |value| mapping.of(value)).map_err(|reason| match (mapping, reason) {
+        (Mapping::Table(_), Reason::NotFiniteResult { row, at }) => {
+            Reason::OutsideTable { of: of(), row, at }
+        }
+        (Mapping::Table(_), Reason::NotFiniteNumber) => {
+            Reason::OutsideTable { of: of(), row: None, at: None }
+        }
+        (_, reason) => reason,
+    })
 }
 
 // One loop for each operation, so that the compiler vectorises it.

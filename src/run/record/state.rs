@@ -7,7 +7,7 @@ use indexmap::IndexMap;
 
 use super::memo::{Computed, Keys, Memo};
 use super::opened::Opened;
-use super::signal::{Cutter, Samples, Signal, apply, arithmetic, each};
+use super::signal::{Cutter, Samples, Signal, apply, arithmetic, each, mapped};
 use crate::catalog::Reducer;
 use crate::check::evaluate::number;
 use crate::check::plan::{Plan, StepSpec};
@@ -16,7 +16,6 @@ use crate::metrics::percentile::percentiles;
 use crate::metrics::sampling::Traits;
 use crate::result::{Reason, Subject};
 use crate::run::sections::{Extent, Known, chosen};
-use crate::units::raised;
 
 /// Value of a requested node.
 #[derive(Clone, Debug)]
@@ -400,7 +399,9 @@ impl State<'_> {
             Operation::Arithmetic(operator) => arithmetic(*operator, input(0)?, input(1)?)
                 .map_err(|reason| self.without_zeros(node.inputs[1], reason)),
             Operation::Negative => each(input(0)?, |value| -value),
-            Operation::Power(exponent) => each(input(0)?, |value| raised(value, *exponent)),
+            Operation::Mapped(mapping) => {
+                mapped(input(0)?, mapping, || self.graph.nodes[node.inputs[0]].label.text.clone())
+            }
             Operation::Apply(function) => {
                 let inputs: Result<Vec<_>, _> =
                     node.inputs.iter().map(|&input| self.signal(input)).collect();

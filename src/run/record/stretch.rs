@@ -188,7 +188,7 @@ fn common(graph: &Graph, track: bool, has: impl Fn(&str) -> bool) -> BTreeSet<No
             Operation::Constant(of) => matches!(of.kind, Kind::Constant(_)),
             Operation::Arithmetic(_)
             | Operation::Negative
-            | Operation::Power(_)
+            | Operation::Mapped(_)
             | Operation::Apply(_)
             | Operation::Step(_) => true,
             Operation::OverAxis(operation) => !matches!(operation, AxisOperation::Shifted(_)),

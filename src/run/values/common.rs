@@ -7,15 +7,14 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use crate::catalog::Reducer;
-use crate::check::evaluate::number;
+use crate::check::evaluate::{number, words};
 use crate::check::plan::{AxisOperation, Expr, Kind, Side};
 use crate::metrics::percentile::Method;
 use crate::metrics::resample::{self, Located};
 use crate::metrics::sampling::Traits;
 use crate::result::Reason;
-use crate::run::record::{Along, Samples, Signal, apply, arithmetic, each};
+use crate::run::record::{Along, Samples, Signal, apply, arithmetic, each, mapped};
 use crate::run::sections::{Extent, Known};
-use crate::units::raised;
 
 /// Where the samples of two records meet. It is the same for all signals of the two.
 #[derive(Debug)]
@@ -248,9 +247,7 @@ impl Both<'_> {
                 arithmetic(*operator, &inner(left)?, &inner(right)?)
             }
             Kind::Negative(signal) => each(&inner(signal)?, |value| -value),
-            Kind::Power(signal, exponent) => {
-                each(&inner(signal)?, |value| raised(value, *exponent))
-            }
+            Kind::Mapped(signal, mapping) => mapped(&inner(signal)?, mapping, || words(signal)),
             Kind::Call(function, arguments) => {
                 let arguments = arguments.iter().map(inner).collect::<Result<Vec<_>, _>>()?;
                 apply(&arguments.iter().collect::<Vec<_>>(), function.run)

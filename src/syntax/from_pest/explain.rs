@@ -233,6 +233,7 @@ pub(super) fn joins(rule: Rule) -> bool {
             | kw_confidence
             | kw_share
             | kw_percentile
+            | kw_table
             | kw_weighted
             | kw_by
             | kw_holds
@@ -322,6 +323,9 @@ fn in_words(rule: Rule) -> &'static str {
         percentile => "a percentile such as `p99.85`",
         of_percentile | percentile_by | kw_percentile => "`percentile` and a number",
         constant => "a number or a parameter",
+        table | kw_table => "`table x: (x, y), ...`",
+        point => "a point such as `(300 m, 1.2)`",
+        held => "`held`",
         name | path | label | plain => "a name",
         unit | any_unit | coordinate_unit => "a unit",
         zone => "a zone",

@@ -333,6 +333,10 @@ mod tests {
                 format!("{value:.11e}").parse::<f64>().expect("a number").to_string()
             }
             Node::Percentile(percent) => format!("p{percent}"),
+            Node::Table { of, points, held } => {
+                let points = points.iter().map(|(x, y)| format!("({} {})", shown(x), shown(y)));
+                format!("(table {} {}{held})", shown(of), points.collect::<String>())
+            }
             Node::PercentileBy(of) => format!("(percentile {})", shown(of)),
             Node::Path(path) => path.clone(),
             Node::Binary(operator, left, right) => {

@@ -216,6 +216,19 @@ fn without_suffix(mut part: Parsed) -> Option<Phrase> {
             let name = part.next()?.named();
             Node::Call(name, part.by_ref().map(either).collect::<Option<Vec<_>>>()?)
         }
+        Rule::table => {
+            let of = Box::new(value(part.next()?)?);
+            let (mut points, mut held) = (Vec::new(), false);
+            for mut part in part.by_ref().filter(|part| part.rule != Rule::comma) {
+                if part.rule == Rule::held {
+                    held = true;
+                } else {
+                    let mut inner = part.by_ref().filter(|part| part.rule == Rule::sum);
+                    points.push((sum(inner.next()?)?, sum(inner.next()?)?));
+                }
+            }
+            Node::Table { of, points, held }
+        }
         Rule::of_percentile => {
             let percentile = value(part.next()?)?;
             match part.find(|part| part.rule != Rule::of) {

@@ -47,6 +47,7 @@ quantity root_first "First sample of the root"
   from   measured
   of     root
   value  first^-2 * 1 kN^2
+  in     kN
   where  radius > 600 m
   limit  each 8 kN
 
