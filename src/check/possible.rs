@@ -339,8 +339,8 @@ mod tests {
             );
         };
         for left in intervals {
-            for exponent in [-2, -1, 0, 1, 2, 3] {
-                points(left).for_each(|x| inside(&power(left, exponent), x.powi(exponent)));
+            for exponent in [-2.0, -1.0, -0.5, 0.0, 0.3, 1.0, 2.0, 3.0] {
+                points(left).for_each(|x| inside(&power(left, exponent), raised(x, exponent)));
             }
             for function in crate::catalog::FUNCTIONS
                 .iter()
