@@ -43,8 +43,8 @@ section speed
   found  mean of running_speed
 
 section country "Country"
-  one of  IT, FR, DE, CH
-  note    "Of the run. The database of the paper was measured in these four countries."
+  one of  any word
+  note    "Of the run. The database of the paper was measured in IT, FR, DE and CH."
 
 channel running_speed "Speed"
   in      km/h

@@ -116,9 +116,9 @@ vehicle Q0 "Static vertical wheel force"
          "another unit, or the load of an axle or of the vehicle."
 
 vehicle admissible_speed "Admissible speed, which determines the length of sections"
-  in       km/h
-  default  not stated
-  note     "On-track tests are run up to 1.1 times this speed."
+  in        km/h
+  optional  not assessable
+  note      "On-track tests are run up to 1.1 times this speed."
 
 section zone "Test zone"
   one of  zones

@@ -191,19 +191,19 @@ vehicle Q0 "Static vertical wheel force"
          "another unit, or the load of an axle or of the vehicle."
 
 vehicle admissible_speed "Admissible speed, which determines the length of sections"
-  in       km/h
-  default  not stated
-  note     "On-track tests are run up to 1.1 times this speed."
+  in        km/h
+  optional  not assessable
+  note      "On-track tests are run up to 1.1 times this speed."
 
 vehicle bogie_mass "Mass of a bogie frame"
-  in       kg
-  key      bogie.mass
-  default  not stated
+  in        kg
+  key       bogie.mass
+  optional  not assessable
 
 vehicle wheelset_mass "Mass of a wheelset"
-  in       kg
-  key      wheelset.mass
-  default  not stated
+  in        kg
+  key       wheelset.mass
+  optional  not assessable
 
 section zone "Test zone"
   one of  zones

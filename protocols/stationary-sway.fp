@@ -13,12 +13,12 @@ protocol stationary-sway "Matching error of the hysteresis loops of a stationary
            "loop, rising or falling."
 
 parameter largest_error "Limit of the largest matching error"
-  default  not stated
-  range    0.01 mrad to 100 mrad
+  optional  not assessable
+  range     0.01 mrad to 100 mrad
 
 parameter mean_error "Limit of the mean matching error"
-  default  not stated
-  range    0.01 mrad to 100 mrad
+  optional  not assessable
+  range     0.01 mrad to 100 mrad
 
 channel cant "Cant of the vehicle"
   in  mm

@@ -245,7 +245,11 @@ fn own_protocol(campaigns: &[Campaign], problems: &mut Problems) -> Option<Famil
 /// one needs, is of another kind of machine.
 fn of_another_kind(compiled: &Compiled, campaign: &Campaign) -> Option<Problem> {
     let needed = || {
-        compiled.plan.vehicle.iter().filter(|datum| datum.default.is_none() && !datum.may_be_absent)
+        compiled
+            .plan
+            .vehicle
+            .iter()
+            .filter(|datum| datum.default.is_none() && datum.optional.is_none())
     };
     let described = !campaign.vehicle.entries().is_empty();
     if campaign.protocol.is_some()

@@ -13,7 +13,12 @@ pub fn all(
     let left_out = plan.leaves_out.iter().map(|says| Remark::LeavesOut { says: says.clone() });
     let changed = Some(protocol.deviations.len()).filter(|rules| *rules > 0);
     let changed = changed.map(|rules| Remark::RulesChanged { rules });
-    let unchecked = notes.extract_if(.., |note| matches!(note, Remark::Unchecked { .. }));
+    let unchecked = notes.extract_if(.., |note| {
+        matches!(
+            note,
+            Remark::Unchecked { .. } | Remark::NotAssessed { .. } | Remark::RulesNotChecked { .. }
+        )
+    });
     let parameters = protocol.parameters_off_default.clone();
     let set = (!parameters.is_empty()).then_some(Remark::ParametersSet { parameters });
     let of_protocol = changed.into_iter().chain(set).chain(unchecked).chain(edited(findings));

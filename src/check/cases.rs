@@ -178,9 +178,11 @@ impl Checker<'_> {
         // A choice parameter stands for its value, unless a word with its name is among the choices.
         let meant = choices.contains(&word) || matches!(right.node, Node::Quoted(_));
         let word = if meant { word } else { self.choice_word(&word, &right.place())? };
-        let is_campaign = matches!(left.kind, Kind::Column(index) if self.names.columns[index].kind == DatumKind::Campaign);
-        if is_campaign {
+        let of_any = self.word_of_any(left);
+        if of_any == Some(DatumKind::Campaign) {
             self.campaigns.push(Spanned::new(word.clone(), right.place()));
+        } else if of_any.is_some() {
+            self.is_no_datum(&word, right)?;
         } else if !choices.contains(&word) {
             return self.refuse(
                 problem!("unknown-choice", right, "`{}` cannot be `{word}`", words(left))
@@ -189,5 +191,34 @@ impl Checker<'_> {
             );
         }
         Some(word)
+    }
+
+    /// The kind of a datum whose words are not known before the run; of several cases, of the first
+    /// that is one.
+    fn word_of_any(&self, of: &Expr) -> Option<DatumKind> {
+        let kind = match &of.kind {
+            Kind::Column(index) => &self.names.columns[*index].kind,
+            Kind::Vehicle(index) => &self.names.vehicle[*index].kind,
+            Kind::Cases(arms, otherwise) => {
+                let mut values = arms.iter().map(|(value, _)| value).chain(otherwise.as_deref());
+                return values.find_map(|value| self.word_of_any(value));
+            }
+            _ => return None,
+        };
+        matches!(kind, DatumKind::AnyWord | DatumKind::Campaign).then(|| kind.clone())
+    }
+
+    /// Refuses a word without quotes that is the name of a datum: no list tells which is meant.
+    fn is_no_datum(&mut self, word: &str, written: &Phrase) -> Option<()> {
+        let names = &self.names;
+        let mut data = names.columns.iter().chain(&names.vehicle);
+        let Some(datum) = data.find(|datum| datum.name == word) else { return Some(()) };
+        if matches!(written.node, Node::Quoted(_)) {
+            return Some(());
+        }
+        let problem = problem!("not-a-word", written, "`{word}` is the name of a datum")
+            .also(&datum.span, "declared here")
+            .help(format!("a word is only compared with a word; if it is meant: `\"{word}\"`"));
+        self.refuse(problem)
     }
 }

@@ -2,7 +2,6 @@
 //! place of a default. Each is confirmed for one edition of the protocol and for one value.
 
 use super::Overrides;
-use super::declared::NOT_STATED;
 use super::prelude::*;
 use crate::result::{Confirmation, ConfirmedValue, Remark, StatedValue, Unmatched};
 
@@ -53,7 +52,7 @@ fn stated(block: &Block, overrides: &Overrides) -> Option<StatedValue> {
     let name = if kind == "zone" { format!("zone {own_name}") } else { own_name };
     let (text, why) = match (kind, own, unconfirmed) {
         ("parameter", Some(own), _) => (own, None),
-        ("parameter", None, Some(why)) => (default.filter(|text| text != NOT_STATED)?, Some(why)),
+        ("parameter", None, Some(why)) => (default?, Some(why)),
         ("define" | "estimate", _, Some(why)) => (fields(&["is"]), Some(why)),
         ("quantity", _, Some(why)) => (fields(&["limit", "report"]), Some(why)),
         ("zone", _, Some(why)) => (fields(&["where", "minimum length"]), Some(why)),

@@ -10,9 +10,8 @@ use crate::syntax::phrase::Pick;
 /// Largest number of positions of a place: the wheels of a train of sixty vehicles. A signal at
 /// several places has the product of their numbers.
 const MOST_MEMBERS: usize = 500;
-/// Written as the default of a vehicle datum that the vehicle file may omit, and of a parameter that
-/// has no value unless it is set.
-pub const NOT_STATED: &str = "not stated";
+/// Written in place of a list of words.
+const ANY_WORD: &str = "any word";
 
 impl Checker<'_> {
     /// The positions of a place and their aliases.
@@ -85,6 +84,7 @@ impl Checker<'_> {
     ) -> Option<Datum> {
         let kind = match (block.field("in"), block.field("one of")) {
             (Some(unit), None) => DatumKind::Number(self.unit(&unit.value)?),
+            (None, Some(words)) if normalised(&words.value.text) == ANY_WORD => DatumKind::AnyWord,
             (None, Some(words)) => {
                 let words = from_pest::list(&words.value, self.problems)?;
                 let mut words: Vec<String> = words.into_iter().map(|word| word.node).collect();
@@ -117,7 +117,7 @@ impl Checker<'_> {
             kind,
             default: None,
             range: None,
-            may_be_absent: false,
+            optional: self.optional(block)?,
             span: block.place(),
         })
     }
@@ -160,9 +160,6 @@ impl Checker<'_> {
         }
         let Some(field) = block.field("default") else { return Some(()) };
         let word = field.value.text.trim();
-        if normalised(word) == NOT_STATED {
-            return self.may_be_absent(index, block, field);
-        }
         let default = match data_kind {
             DatumKind::Number(unit) => {
                 let (value, dimension) = self.constant(&field.value)?;
@@ -189,6 +186,7 @@ impl Checker<'_> {
             DatumKind::Words(words) if words.iter().any(|known| known == word) => {
                 Scalar::Word(word.to_string())
             }
+            DatumKind::AnyWord => Scalar::Word(word.trim_matches('"').to_string()),
             DatumKind::Words(words) if self.stands_for_one_of(word, &words, &field.value.span) => {
                 Scalar::Word(self.choice_word(word, &field.value.span)?)
             }
@@ -223,23 +221,6 @@ impl Checker<'_> {
             && self.choice_word(word, span).is_some_and(|choice| words.contains(&choice))
     }
 
-    /// Accepts `not stated` for a vehicle datum without a default. The table of sections does not
-    /// need it: an empty cell is a missing value.
-    fn may_be_absent(&mut self, index: usize, block: &Block, field: &Field) -> Option<()> {
-        if block.kind.text == "vehicle" {
-            self.names.vehicle[index].may_be_absent = true;
-            return Some(());
-        }
-        self.refuse(
-            problem!(
-                "unknown-choice",
-                field,
-                "`{NOT_STATED}` can only be written for vehicle data and parameters"
-            )
-            .help("remove the line: without a default, an empty cell is a missing value"),
-        )
-    }
-
     /// Adds a channel to the names.
     pub fn channel(&mut self, name: &str, block: &Block) -> Option<()> {
         let unit = self.required(block, "in").and_then(|field| self.unit(&field.value));
@@ -257,6 +238,11 @@ impl Checker<'_> {
                 false
             }
         };
+        if let Some(optional) = self.optional(block)? {
+            let columns = self.all_columns(&pattern, &places);
+            let name = name.to_string();
+            self.names.optional.push(OptionalChannel { name, columns, track, optional });
+        }
         let span = block.place();
         let channel = Signal { places, is: None, unit: Some(unit), pattern, track, span };
         self.names.signals.insert(name.to_string(), channel);
@@ -273,6 +259,18 @@ impl Checker<'_> {
         let signal = Signal { places, is, unit, pattern, track: false, span: block.place() };
         self.names.signals.entry(name.to_string()).or_insert(signal);
         Some(())
+    }
+
+    /// The columns of a channel, one for each position.
+    fn all_columns(&self, pattern: &str, places: &[String]) -> Vec<String> {
+        places.iter().fold(vec![pattern.to_string()], |columns, place| {
+            let members = self.names.places.get(place).map_or(&[][..], |place| &place.members);
+            let with = |column: String| {
+                let filled = |member: &String| column.replace(&format!("{{{place}}}"), member);
+                members.iter().map(filled).collect::<Vec<_>>()
+            };
+            columns.into_iter().flat_map(with).collect()
+        })
     }
 
     fn places_of(&mut self, block: &Block) -> Option<Vec<String>> {

@@ -7,7 +7,7 @@ use super::overlay::slot;
 use super::positions::is_each;
 use super::prelude::*;
 use crate::result::Deviation;
-use crate::syntax::keys::{self, Sort};
+use crate::syntax::keys::{self, NOT_ASSESSABLE, OPTIONAL, Sort};
 use crate::syntax::phrase::Pick;
 
 /// Rules added, removed or changed from the first document to the second, in the order of the
@@ -144,7 +144,8 @@ fn relaxed(old: Option<&Field>, new: Option<&Field>) -> Option<bool> {
     let quiet = &mut Problems::default();
     let (Some(old), Some(new)) = (old, new) else {
         let demands = matches!(key, "limit" | "removed") || key.starts_with("minimum");
-        return (new.is_none() && demands || new.is_some() && key == "unless").then_some(true);
+        return (new.is_none() && demands || new.is_some() && matches!(key, "unless" | OPTIONAL))
+            .then_some(true);
     };
     let words = |field: &Field| normalised(&field.value.text);
     let (before, after) = (words(old), words(new));
@@ -159,6 +160,7 @@ fn relaxed(old: Option<&Field>, new: Option<&Field>) -> Option<bool> {
             let rank = |text: &str| TREATMENTS.iter().position(|known| *known == text);
             Some(rank(&after)? < rank(&before)?)
         }
+        OPTIONAL => Some(before == NOT_ASSESSABLE && after != NOT_ASSESSABLE),
         "validated" | "holds" => Some(before == EVERY_LIMIT && after != EVERY_LIMIT),
         "removed" | "minimum" | "minimum sections" | "minimum length" | "minimum signals"
         | "minimum pairs" => {

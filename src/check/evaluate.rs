@@ -140,7 +140,7 @@ pub fn shape(expr: &Expr) -> String {
         Kind::Constant(Scalar::Number(value)) => format!("{value:e}"),
         Kind::Constant(Scalar::Word(word)) => format!("'{word}'"),
         Kind::Constant(Scalar::Flag(flag)) => flag.to_string(),
-        Kind::NotStated(parameter) => format!("parameter {parameter}"),
+        Kind::NotStated(parameter, _) => format!("parameter {parameter}"),
         Kind::Vehicle(index) => format!("vehicle{index}"),
         Kind::Column(index) => format!("column{index}"),
         Kind::Start => "start".into(),

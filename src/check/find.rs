@@ -185,11 +185,14 @@ impl Checker<'_> {
         let wanted = match &datum.kind {
             DatumKind::Number(unit) => unit.dimension.in_words(),
             DatumKind::Flag => "a condition".to_string(),
-            DatumKind::Words(_) | DatumKind::Campaign => "a word".to_string(),
+            DatumKind::Words(_) | DatumKind::AnyWord | DatumKind::Campaign => "a word".to_string(),
         };
         let fits = match (&datum.kind, &expr.ty) {
             (DatumKind::Number(unit), Type::Number(dimension)) => unit.dimension == *dimension,
-            (DatumKind::Words(words), Type::Word(of)) => of.iter().all(|word| words.contains(word)),
+            (DatumKind::Words(words), Type::Word(of)) => {
+                !of.is_empty() && of.iter().all(|word| words.contains(word))
+            }
+            (DatumKind::AnyWord, Type::Word(_)) => true,
             (DatumKind::Flag, Type::Flag) => true,
             _ => false,
         };

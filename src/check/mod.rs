@@ -419,7 +419,7 @@ impl Checker<'_> {
                 value: found.value_words.clone(),
                 default: found.default_words.clone(),
                 set_by: found.set_by,
-                stated: found.value.is_some(),
+                lacking: found.value == Err(plan::Optional::NotAssessable),
                 unconfirmed: self.values.why(name),
                 choices: if let plan::Type::Word(choices) = &found.ty {
                     choices.clone()
@@ -447,6 +447,7 @@ impl Checker<'_> {
             columns: self.names.columns.clone(),
             campaigns: self.campaigns.clone(),
             records: self.names.records.clone(),
+            optional: self.names.optional.clone(),
             filters,
             zones,
             checks,

@@ -13,8 +13,8 @@ use crate::units::SYMBOLS;
 #[derive(Clone, Debug)]
 pub struct ParameterDef {
     pub title: String,
-    /// `None`: it has no value unless it is set.
-    pub value: Option<Scalar>,
+    /// Without one, what follows where it is not set.
+    pub value: Result<Scalar, Optional>,
     pub ty: Type,
     pub value_words: String,
     pub default_words: String,
@@ -55,6 +55,7 @@ pub struct Names {
     pub vehicle: Vec<Datum>,
     pub columns: Vec<Datum>,
     pub records: Vec<DeclaredRecord>,
+    pub optional: Vec<OptionalChannel>,
     /// Channels, then the signals that are computed from them.
     pub signals: IndexMap<String, Signal>,
     pub defines: IndexMap<String, Phrase>,

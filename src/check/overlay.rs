@@ -20,6 +20,9 @@ pub fn overlay(parent: &mut Block, variant: &Block) {
         // The values of one record are not compared.
         "compare" => says("from"),
         "from" => says("difference") || says("metric") || says("compare"),
+        // What is absent has its default, or no value.
+        "default" => says("optional"),
+        "optional" => says("default"),
         "in" => says("one of"),
         "one of" => says("in"),
         // A rule and the judgement of a person replace each other, too.

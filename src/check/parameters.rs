@@ -2,11 +2,14 @@
 //! only.
 
 use super::Override;
-use super::declared::NOT_STATED;
 use super::evaluate::words;
 use super::names::ParameterDef;
 use super::prelude::*;
+use crate::syntax::keys::{NOT_ASSESSABLE, NOT_STATED, OPTIONAL};
 use crate::units::number::significant;
+
+/// What follows for a rule where something optional is absent, if others are assessed.
+const NOT_ASSESSED: &str = "not assessed";
 
 impl Checker<'_> {
     /// The parameter of a name. It is checked when it is first used, as its default may use
@@ -24,28 +27,19 @@ impl Checker<'_> {
     }
 
     fn parameter_of(&mut self, name: &str, block: &Block) -> Option<ParameterDef> {
-        let default = self.required(block, "default")?;
+        let optional = self.optional(block)?;
         let title = block.title_text().unwrap_or_default();
         let given = self.overrides.get(name).cloned();
+        if let Some(optional) = optional {
+            return self.without_default(block, title, given, optional);
+        }
+        let default = self.required(block, "default")?;
         let default_words = normalised(&default.value.text);
         let (source, set_by) = match &given {
             Some(Override { text, set_by }) => (text.clone(), *set_by),
             None => (default.value.clone(), SetBy::Default),
         };
         let mut selects = None;
-        if default_words == NOT_STATED && given.is_none() {
-            let ty = self.type_not_stated(name, block, default)?;
-            let (value_words, value) = (default_words.clone(), None);
-            return Some(ParameterDef {
-                title,
-                value,
-                ty,
-                value_words,
-                default_words,
-                set_by,
-                selects,
-            });
-        }
         let (value, ty) = match (block.field("at"), block.field("one of")) {
             (Some(place), _) => {
                 let selected = self.selection(name, place, &default.value, &source)?;
@@ -67,13 +61,18 @@ impl Checker<'_> {
                 self.choice(name, choices, &default.value, &source)?
             }
             (None, None) => {
-                self.number(name, block, &default.value, given.is_some().then_some(&source))?
+                let value = self.constant(&default.value)?;
+                if let Some(range) = block.field("range") {
+                    self.within_range(name, value.0, value.1, &default.value, range);
+                }
+                let set = given.is_some().then_some(&source);
+                self.number(name, block, (value, Some(&default.value)), set)?
             }
         };
         let value_words = normalised(&source.text);
         Some(ParameterDef {
             title,
-            value: Some(value),
+            value: Ok(value),
             ty,
             value_words,
             default_words,
@@ -82,23 +81,72 @@ impl Checker<'_> {
         })
     }
 
-    /// What a parameter is that has no value unless it is set: a number as its range.
-    fn type_not_stated(&mut self, name: &str, block: &Block, default: &Field) -> Option<Type> {
+    /// A parameter that has no value unless it is set: a number, and its range says what it is.
+    fn without_default(
+        &mut self,
+        block: &Block,
+        title: String,
+        given: Option<Override>,
+        optional: Optional,
+    ) -> Option<ParameterDef> {
+        let name = block.name_text();
         let choice = block.field("one of").or_else(|| block.field("at"));
         if let Some(choice) = choice {
-            let says = "only a number can have `default not stated`";
+            let says = "only a number can be an optional parameter";
             return self
-                .refuse(problem!("unknown-choice", default, "{says}").also(choice, "a choice"));
+                .refuse(problem!("unknown-choice", block, "{says}").also(choice, "a choice"));
         }
         let Some(range) = block.field("range") else {
             let says = format!("`{name}` has no default and no range, so its unit is not known");
-            let problem = problem!("missing-field", default, "{says}");
+            let problem = problem!("missing-field", block, "{says}");
             return self.refuse(problem.help("add a line `range 0.1 mrad to 10 mrad`"));
         };
         let (low, _) = from_pest::range(&range.value, self.problems)?;
         let (_, dimension) = self.constant_phrase(&low)?;
-        self.range_ends(name, dimension, range, None)?;
-        Some(Type::Number(dimension))
+        let ends = self.range_ends(name, dimension, range, None)?;
+        let (value, set_by) = match &given {
+            None => (Err(optional), SetBy::Default),
+            Some(Override { text, set_by }) => {
+                // Any number of the range stands for a default.
+                let (value, _) =
+                    self.number(name, block, ((ends[0], dimension), None), Some(text))?;
+                (Ok(value), *set_by)
+            }
+        };
+        let value_words = given.map_or(NOT_STATED.into(), |given| normalised(&given.text.text));
+        Some(ParameterDef {
+            title,
+            value,
+            ty: Type::Number(dimension),
+            value_words,
+            default_words: NOT_STATED.into(),
+            set_by,
+            selects: None,
+        })
+    }
+
+    /// Whether a block is of something that may be absent, and what follows then.
+    pub fn optional(&mut self, block: &Block) -> Option<Option<Optional>> {
+        let Some(field) = block.field(OPTIONAL) else { return Some(None) };
+        if let Some(default) = block.field("default") {
+            let says = "what is absent has its default or, if it is optional, no value";
+            return self.refuse(
+                error("duplicate-field", says, &field.key).also(&default.key, "a default"),
+            );
+        }
+        let word = normalised(&field.value.text);
+        match word.as_str() {
+            NOT_ASSESSED => Some(Some(Optional::NotAssessed)),
+            NOT_ASSESSABLE => Some(Some(Optional::NotAssessable)),
+            _ => self.refuse(
+                problem!(
+                    "unknown-choice",
+                    field,
+                    "`{word}` is not what follows where it is absent"
+                )
+                .help(format!("write `{NOT_ASSESSED}` or `{NOT_ASSESSABLE}`")),
+            ),
+        }
     }
 
     fn choice(
@@ -163,37 +211,21 @@ impl Checker<'_> {
         Some((place_name, chosen))
     }
 
+    /// The value that is set, or else the default, whose text is given if it has one.
     fn number(
         &mut self,
         name: &str,
         block: &Block,
-        default: &Text,
+        ((default_value, dimension), default): ((f64, Dimension), Option<&Text>),
         given: Option<&Text>,
     ) -> Option<(Scalar, Type)> {
-        let set = given.map(|given| (given, self.constant(given)));
-        let stated = normalised(&default.text) != NOT_STATED;
-        // Without a default, the range says what the number is, and the set value stands for it.
-        let found = match (stated, block.field("default"), &set) {
-            (true, ..) => self.constant(default),
-            (false, Some(field), Some((_, set))) => {
-                match (self.type_not_stated(name, block, field)?, set) {
-                    (Type::Number(dimension), Some((value, _))) => Some((*value, dimension)),
-                    _ => None,
-                }
-            }
-            _ => None,
-        };
-        let (default_value, dimension) = found?;
-        if let Some(range) = block.field("range").filter(|_| stated) {
-            self.within_range(name, default_value, dimension, default, range);
-        }
         let as_default = Some((Scalar::Number(default_value), Type::Number(dimension)));
-        let Some((text, set)) = set else { return as_default };
-        let (value, found) = set?;
+        let Some(text) = given else { return as_default };
+        let (value, found) = self.constant(text)?;
         if found != dimension {
-            let default_words = default.text.trim();
-            let help = (found == Dimension::ONE && stated)
-                .then(|| format!("write its unit, as its default does: `{default_words}`"));
+            let help = default.filter(|_| found == Dimension::ONE).map(|default| {
+                format!("write its unit, as its default does: `{}`", default.text.trim())
+            });
             return self.refuse(
                 problem!(
                     "unit-mismatch",
@@ -203,7 +235,7 @@ impl Checker<'_> {
                     found.in_words()
                 )
                 .label(found.in_words())
-                .also(default, "its default")
+                .also_if(default, "its default")
                 .help_if(help),
             );
         }

@@ -232,8 +232,8 @@ impl Checker<'_> {
         if self.names.parameter_blocks.contains_key(path) {
             let parameter = self.parameter(path, span)?;
             let kind = match parameter.value {
-                Some(value) => Kind::Constant(value),
-                None => Kind::NotStated(path.to_string()),
+                Ok(value) => Kind::Constant(value),
+                Err(optional) => Kind::NotStated(path.to_string(), optional),
             };
             return expr(kind, parameter.ty);
         }
@@ -386,7 +386,7 @@ impl Checker<'_> {
                 key: CAMPAIGN.into(),
                 kind: DatumKind::Campaign,
                 default: None,
-                may_be_absent: false,
+                optional: None,
                 range: None,
                 span: span.clone(),
             });
@@ -478,7 +478,7 @@ impl Checker<'_> {
             return Some(word.to_string());
         }
         match self.parameter(word, span)?.value {
-            Some(Scalar::Word(choice)) => Some(choice),
+            Ok(Scalar::Word(choice)) => Some(choice),
             _ => Some(word.to_string()),
         }
     }
@@ -489,7 +489,7 @@ fn datum_type(kind: &DatumKind) -> Type {
         DatumKind::Number(unit) => Type::Number(unit.dimension),
         DatumKind::Words(words) => Type::Word(words.clone()),
         DatumKind::Flag => Type::Flag,
-        // Any word: the campaigns are not known before the run.
-        DatumKind::Campaign => Type::Word(Vec::new()),
+        // The words are not known before the run.
+        DatumKind::AnyWord | DatumKind::Campaign => Type::Word(Vec::new()),
     }
 }

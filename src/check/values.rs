@@ -95,8 +95,8 @@ impl<V: Values> Values for Watched<'_, V> {
 pub fn leaf(kind: &Kind, values: &dyn Values) -> Result<Scalar, Reason> {
     match kind {
         Kind::Constant(value) => Ok(value.clone()),
-        Kind::NotStated(parameter) => {
-            Err(Reason::ParameterNotStated { parameter: parameter.clone() })
+        Kind::NotStated(parameter, optional) => {
+            Err(optional.told(Reason::ParameterNotStated { parameter: parameter.clone() }))
         }
         Kind::Vehicle(index) => values.vehicle(*index),
         Kind::Column(index) => values.column(*index),

@@ -9,7 +9,7 @@ use crate::provenance::signature::{self, SecretKey, secret_key};
 use crate::provenance::statement;
 use crate::report::estimates::{self, OfLimit};
 use crate::report::{findings, number, rules};
-use crate::result::{Certification, QuantityResult, StatisticResult, Verdict};
+use crate::result::{Certification, QuantityResult, Reason, StatisticResult, Verdict};
 use crate::run::Settings;
 use crate::words;
 
@@ -155,13 +155,26 @@ fn summary(found: &Certification, console: &Console) -> Lines {
     out
 }
 
-fn verdict(holds: Option<bool>, marginal: bool, console: &Console) -> String {
+fn verdict(
+    quantity: &QuantityResult,
+    holds: Option<bool>,
+    marginal: bool,
+    console: &Console,
+) -> String {
     let word = match holds {
         Some(true) => "met",
         Some(false) => "NOT MET",
-        None => "not assessable",
+        None => open(quantity),
     };
     console.paint(format!("{word}{}", if marginal { ", marginal" } else { "" }), holds)
+}
+
+/// What is said of a limit of a quantity that neither holds nor does not.
+fn open(quantity: &QuantityResult) -> &'static str {
+    match quantity.reason.as_ref().is_some_and(Reason::is_of_optional) {
+        true => "not assessed",
+        false => "not assessable",
+    }
 }
 
 fn shown(value: Option<f64>) -> String {
@@ -199,7 +212,8 @@ fn statistics(found: &Certification, console: &Console) -> Option<Lines> {
     );
     for quantity in told {
         // With too few pairs, statistics that are within their limits do not meet them.
-        let open = quantity.holds.is_none() && quantity.reason.is_some();
+        let is_open = quantity.holds.is_none()
+            && quantity.reason.as_ref().is_some_and(|reason| !reason.is_of_optional());
         for (index, statistic) in estimates::single(quantity).into_iter().enumerate() {
             let first = index == 0;
             let name = if first { &*quantity.id } else { "" };
@@ -213,15 +227,20 @@ fn statistics(found: &Certification, console: &Console) -> Option<Lines> {
                 shown(statistic.value),
                 bound(statistic),
                 ratio(statistic),
-                verdict(statistic.holds.filter(|_| !open), statistic.marginal && !open, console)
+                verdict(
+                    quantity,
+                    statistic.holds.filter(|_| !is_open),
+                    statistic.marginal && !is_open,
+                    console
+                )
             );
         }
         match &quantity.reason {
             Some(reason) if quantity.statistics.is_empty() => {
                 out += &format!("{:width$}  {}\n", quantity.id, reason.text())
             }
-            Some(reason) if open => {
-                out += &format!("{:width$}  not assessable: {}\n", "", reason.text());
+            Some(reason) if quantity.holds.is_none() => {
+                out += &format!("{:width$}  {}: {}\n", "", open(quantity), reason.text());
             }
             _ => {}
         }
@@ -267,7 +286,7 @@ fn estimated(found: &Certification, console: &Console) -> Option<Lines> {
             ratio(decisive),
             if decisive.value.is_some() { place(limit) } else { "-".into() },
             limit.holding(),
-            verdict(limit.holds(), limit.results.iter().any(|one| one.marginal), console)
+            verdict(quantity, limit.holds(), limit.results.iter().any(|one| one.marginal), console)
         );
         before = &quantity.id;
     }

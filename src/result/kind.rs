@@ -1,5 +1,7 @@
 //! What a protocol is about, which follows from its quantities, and the words of its verdict.
 
+use std::collections::BTreeSet;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -113,14 +115,24 @@ impl Certification {
         format!("{}{note}", self.verdict_word())
     }
 
-    /// How many values are not confirmed, and what the simulation was fitted to.
+    /// How many quantities are not assessed and values not confirmed, and what the simulation was
+    /// fitted to.
     pub fn beside_the_verdict(&self) -> Option<String> {
         let values = self.provisional.len();
         let provisional = (values > 0 && self.verdict != Verdict::NotAssessable)
             .then(|| words::text(&Remark::Provisional { values }).into());
         let note = self.verdict_note.as_ref().map(|note| note.text().into());
-        let both: Vec<String> = provisional.into_iter().chain(note).collect();
-        (!both.is_empty()).then(|| both.join(", "))
+        let not_assessed: BTreeSet<&String> = (self.deviations.iter())
+            .filter_map(|deviation| match &deviation.what {
+                Remark::NotAssessed { quantity, in_part: false, .. } => Some(quantity),
+                _ => None,
+            })
+            .collect();
+        let quantities = not_assessed.len();
+        let without = (quantities > 0 && self.verdict != Verdict::NotAssessable)
+            .then(|| words::text(&Remark::WithoutQuantities { quantities }).into());
+        let all: Vec<String> = without.into_iter().chain(provisional).chain(note).collect();
+        (!all.is_empty()).then(|| all.join(", "))
     }
 
     /// Sides of which records are in the quantities: simulated, measured.

@@ -40,15 +40,15 @@ pub use kind::{Kind, VerdictWords};
 pub use origin::{FittedTo, ImportedOne, ImportedSide, OriginInfo};
 pub use pair::PairValue;
 pub use parts::{
-    Beyond, Channels, Datum, GivenVerdict, LimitNotMet, OfVehicle, Sections, ShortZone, Subject,
-    SuspectedFactor, VehicleValue,
+    Beyond, Channels, Datum, GivenVerdict, LimitNotMet, OfVehicle, RecordsOf, Sections, ShortZone,
+    Subject, SuspectedFactor, VehicleValue,
 };
 pub use quantity::{
     Count, Figures, GroupRegression, GroupResult, LimitFactor, Outside, QuantityResult,
     RegressionAt, RegressionFigure, RegressionPoint, Reported, Sample, StatisticResult,
 };
 pub use reason::{FindingData, OfSections, Reason, UnusedSection};
-pub use remark::{OutlyingSection, RecordsOf, Remark, SectionOffset};
+pub use remark::{OutlyingSection, Remark, SectionOffset};
 pub use report::{Identification, ReportItem};
 pub use scope::{RecordName, Scope, StatisticName, zones};
 pub use spread::{ClassSpread, Furthest, OfRecord, Spread};

@@ -138,3 +138,10 @@ impl Channels {
         }
     }
 }
+
+/// Records of a campaign, which has a name if there are several.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RecordsOf {
+    pub records: String,
+    pub campaign: Option<String>,
+}

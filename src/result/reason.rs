@@ -5,8 +5,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::parts::{
-    Beyond, Channels, Datum, GivenVerdict, LimitNotMet, OfVehicle, Sections, ShortZone, Subject,
-    SuspectedFactor,
+    Beyond, Channels, Datum, GivenVerdict, LimitNotMet, OfVehicle, RecordsOf, Sections, ShortZone,
+    Subject, SuspectedFactor,
 };
 use super::told;
 use crate::words::{self, Text};
@@ -44,6 +44,10 @@ pub enum Reason {
     /// What a method of computation says of its numbers.
     Method {
         says: String,
+    },
+    /// Something optional is absent: what needs it is not assessed, and the rest is.
+    Optional {
+        reason: Box<Self>,
     },
     /// A finding that excludes the section.
     Finding {
@@ -135,6 +139,14 @@ pub enum Reason {
     // Records.
     NoChannel {
         channel: String,
+    },
+    /// An optional channel: its columns that some records lack, and the most similar one that they
+    /// have.
+    NotRecorded {
+        channel: String,
+        columns: Vec<String>,
+        records: Vec<RecordsOf>,
+        near: Option<String>,
     },
     NoCaseOfSignal {
         expression: String,
@@ -693,6 +705,22 @@ impl Reason {
             | Self::DividedByZero { .. } => true,
             Self::About { reason, .. } => reason.is_of_samples(),
             Self::Both { first, second } => first.is_of_samples() || second.is_of_samples(),
+            _ => false,
+        }
+    }
+
+    /// Whether it is for the absence of something optional alone.
+    pub fn is_of_optional(&self) -> bool {
+        match self {
+            Self::Optional { .. } => true,
+            Self::About { reason, .. }
+            | Self::OfEstimate { reason, .. }
+            | Self::NotChecked { reason }
+            | Self::GroupUnknown { reason, .. }
+            | Self::LimitApplicationUnknown { reason }
+            | Self::NoLimit { reason }
+            | Self::GiveEachItsOwn { reason, .. } => reason.is_of_optional(),
+            Self::Both { first, second } => first.is_of_optional() && second.is_of_optional(),
             _ => false,
         }
     }

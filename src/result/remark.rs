@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::parts::Sections;
+use super::parts::{RecordsOf, Sections};
 use super::{ParameterInfo, Reason, StatisticName, Unmatched};
 use crate::words::{self, Text};
 
@@ -37,6 +37,10 @@ pub enum Remark {
     Provisional {
         values: usize,
     },
+    /// Beside a verdict: how many quantities it does not speak of.
+    WithoutQuantities {
+        quantities: usize,
+    },
     /// A confirmation of a value in `campaign.yaml` that does not count.
     ConfirmationNotCounted {
         name: String,
@@ -56,6 +60,17 @@ pub enum Remark {
     LackingChannels {
         channels: Vec<String>,
         records: Vec<RecordsOf>,
+    },
+    /// A quantity that is not assessed, or not in all, for want of something optional.
+    NotAssessed {
+        quantity: String,
+        in_part: bool,
+        reason: Reason,
+    },
+    /// Plausibility rules that are not checked, for want of an optional channel.
+    RulesNotChecked {
+        rules: Vec<String>,
+        reason: Reason,
     },
     /// What was added to the axis of the measurement, by a column of the table of sections.
     Shifted {
@@ -144,13 +159,6 @@ pub enum Remark {
         campaigns: Vec<String>,
     },
     NoSimulator,
-}
-
-/// Records of a campaign, which has a name if there are several.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct RecordsOf {
-    pub records: String,
-    pub campaign: Option<String>,
 }
 
 /// What is added to the axis of the measurement of a section.

@@ -11,6 +11,15 @@ pub use kinds::KINDS;
 /// The field that makes a block a family of blocks.
 pub const EACH: &str = "for each";
 
+/// The field of what may be absent.
+pub const OPTIONAL: &str = "optional";
+
+/// What an optional datum leads to that is absent.
+pub const NOT_ASSESSABLE: &str = "not assessable";
+
+/// As the first versions wrote a default for `optional not assessable`.
+pub const NOT_STATED: &str = "not stated";
+
 /// How the value of a field is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sort {

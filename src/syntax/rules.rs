@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 
 use super::document::{Block, Field, Text};
-use super::keys::{KINDS, Key, Kind};
+use super::keys::{KINDS, Key, Kind, NOT_ASSESSABLE, NOT_STATED, OPTIONAL};
 use super::lines;
-use crate::problem::{Problem, Problems, error, nearest, problem};
+use super::phrase::normalised;
+use crate::problem::{Problem, Problems, error, nearest, problem, warning};
 use crate::source::Span;
 
 /// Largest number of words of a key.
@@ -160,7 +161,13 @@ impl<'a> Reader<'a> {
     }
 
     /// Adds a field to its block unless it is empty or already there.
-    pub fn field(&mut self, kind: &Kind, key: &Key, block: &mut Block, field: Field) {
+    pub fn field(
+        &mut self,
+        kind: &'static Kind,
+        key: &'static Key,
+        block: &mut Block,
+        field: Field,
+    ) {
         if field.value.text.trim().is_empty() {
             let example = match (key.sort, self.form) {
                 (super::keys::Sort::Text, Form::Lines) => quoted(key.example),
@@ -173,6 +180,7 @@ impl<'a> Reader<'a> {
             );
             return;
         }
+        let (key, field) = self.in_present_words(kind, key, field);
         if let Some(first) = block.field(key.word).filter(|_| !key.many) {
             self.problems.push(
                 problem!(
@@ -187,6 +195,28 @@ impl<'a> Reader<'a> {
             return;
         }
         block.fields.push(field);
+    }
+
+    /// `default not stated`, as the first versions had it, in the present words: it is read as
+    /// before, and `fmt` writes what it is now.
+    fn in_present_words(
+        &mut self,
+        kind: &'static Kind,
+        key: &'static Key,
+        mut field: Field,
+    ) -> (&'static Key, Field) {
+        let optional = kind.key(OPTIONAL).filter(|_| key.word == "default");
+        let Some(now) = optional.filter(|_| normalised(&field.value.text) == NOT_STATED) else {
+            return (key, field);
+        };
+        let colon = if self.form == Form::Yaml { ":" } else { "" };
+        let says = format!("`default {NOT_STATED}` is an old spelling");
+        let help = format!("write `{OPTIONAL}{colon} {NOT_ASSESSABLE}`, as `fishplate fmt` does");
+        self.problems.push(warning("old-spelling", says, &field.value).help(help));
+        for (text, word) in [(&mut field.key, now.word), (&mut field.value, NOT_ASSESSABLE)] {
+            *text = Text { text: word.into(), exact: false, ..text.clone() };
+        }
+        (now, field)
     }
 
     /// Adds a block unless there is one with its kind and name.

@@ -27,6 +27,7 @@ mod find;
 mod foreign;
 mod found_sections;
 mod import;
+mod optional;
 mod parquet_records;
 mod plausibility;
 mod records;

@@ -746,7 +746,7 @@ fn a_parameter_may_have_no_value() {
     const START: &str = "protocol variant \"A variant\"\n  extends  en14363-2016-annex-t\n\n";
     let told = |parameter: &str| {
         let text = format!(
-            "{START}parameter highest \"Highest\"\n  default  not stated\n{parameter}\nquantity Y_max\n  limit  std highest\n"
+            "{START}parameter highest \"Highest\"\n  optional  not assessable\n{parameter}\nquantity Y_max\n  limit  std highest\n"
         );
         let (_, plan, problems) = checked_with(&Source::new("variant.fp", text), &Overrides::new());
         (plan.is_some(), problems.0.first().map(|problem| problem.code))
@@ -754,10 +754,51 @@ fn a_parameter_may_have_no_value() {
     assert!(told("  range  1 kN to 9 kN\n").0);
     assert_eq!(told(""), (false, Some("missing-field")));
     assert_eq!(told("  one of  a, b\n"), (false, Some("unknown-choice")));
+    assert_eq!(told("  range  1 kN to 9 kN\n  default  2 kN\n"), (false, Some("duplicate-field")));
     // As the edge of a filter it would be needed before any record is read.
-    let filter = "protocol variant \"A variant\"\n  extends  en14363-2016-annex-t\n\nparameter lowpass_frequency\n  default  not stated\n";
+    let filter = "protocol variant \"A variant\"\n  extends  en14363-2016-annex-t\n\nparameter lowpass_frequency\n  optional  not assessable\n";
     let (_, plan, _) = checked_with(&Source::new("variant.fp", filter), &Overrides::new());
     assert!(plan.is_none());
+}
+
+/// The first versions wrote `default not stated`: it is read as what it is now, told, and written
+/// anew.
+#[test]
+fn an_old_spelling_is_read_and_written_anew() {
+    let text = |field: &str| {
+        format!(
+            "protocol old \"Old\"\n  extends  en14363-2016-annex-t\n\nvehicle bogie_mass \"Mass\"\n  in        kg\n  {field}\n"
+        )
+    };
+    let read = |text: String| {
+        let mut problems = Problems::default();
+        let document = syntax::read(&Source::new("old.fp", text), &mut problems);
+        (document, problems.0.iter().map(|problem| problem.code).collect::<Vec<_>>())
+    };
+    let (old, told) = read(text("default   not stated"));
+    assert_eq!(told, ["old-spelling"]);
+    let (now, told) = read(text("optional  not assessable"));
+    assert!(told.is_empty());
+    assert!(old == now);
+    assert_eq!(print_text(&old), text("optional  not assessable"));
+}
+
+/// A word that no list has is compared as it is; one that names a datum is ambiguous.
+#[test]
+fn a_datum_may_be_any_word() {
+    let told = |condition: &str| {
+        let text = format!(
+            "protocol any \"Any word\"\n  extends  en14363-2016-annex-t\n\nsection country \"Country\"\n  one of  any word\n\nquantity Y_max\n  report  maximum for sections where {condition}\n  report  n for each country\n"
+        );
+        let (_, plan, problems) = checked_with(&Source::new("any.fp", text), &Overrides::new());
+        (plan.is_some(), problems.0.first().map(|problem| problem.code))
+    };
+    assert_eq!(told("country is IT"), (true, None));
+    assert_eq!(told("country is not \"Great Britain\""), (true, None));
+    assert_eq!(told("country is \"zone\""), (true, None));
+    assert_eq!(told("country is zone"), (false, Some("not-a-word")));
+    assert_eq!(told("country is 5 kN"), (false, Some("not-a-word")));
+    assert_eq!(told("country < 5"), (false, Some("not-a-number")));
 }
 
 /// A variant with a slip in a name adds something, and what it was to change stays: this is told. A

@@ -4,7 +4,7 @@ use std::fmt;
 use std::ops::Deref;
 use std::sync::Arc;
 
-use super::{Scalar, Side, Step};
+use super::{Optional, Scalar, Side, Step};
 use crate::catalog::{Function, Reducer};
 use crate::source::{Located, Span};
 use crate::units::{Dimension, Unit, raised};
@@ -67,7 +67,7 @@ pub enum Type {
 pub enum Kind {
     Constant(Scalar),
     /// A parameter that has no value unless it is set, and is not set.
-    NotStated(String),
+    NotStated(String, Optional),
     /// Index into [`Plan::vehicle`](super::Plan::vehicle).
     Vehicle(usize),
     /// Index into [`Plan::columns`](super::Plan::columns).

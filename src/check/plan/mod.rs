@@ -11,7 +11,7 @@ mod verdict;
 
 use serde::{Deserialize, Serialize};
 
-use crate::result;
+use crate::result::{self, Reason};
 use crate::source::{Span, Spanned};
 use crate::units::Unit;
 
@@ -45,6 +45,8 @@ pub struct Plan {
     /// Names of campaigns that conditions ask for, where they stand.
     pub campaigns: Vec<Spanned<String>>,
     pub records: Vec<DeclaredRecord>,
+    /// Channels that records may lack.
+    pub optional: Vec<OptionalChannel>,
     pub filters: Vec<NamedFilter>,
     pub zones: Vec<Zone>,
     pub checks: Vec<Check>,
@@ -110,8 +112,8 @@ pub struct Parameter {
     pub value: String,
     pub default: String,
     pub set_by: SetBy,
-    /// Whether it has a value.
-    pub stated: bool,
+    /// Whether it has no value, and nothing can be assessed without it.
+    pub lacking: bool,
     /// Why its default is to be confirmed.
     pub unconfirmed: Option<String>,
     /// The words of a choice; empty otherwise.
@@ -135,12 +137,41 @@ pub struct Datum {
     pub key: String,
     pub kind: DatumKind,
     pub default: Option<Scalar>,
-    /// Whether the vehicle file may omit it. Rules that depend on it then apply as far as they hold
-    /// for every value.
-    pub may_be_absent: bool,
+    /// Whether campaigns may omit it. Rules that depend on it then apply as far as they hold for
+    /// every value.
+    pub optional: Option<Optional>,
     /// Allowed values of a number; `None` where the protocol states none.
     pub range: Option<DatumRange>,
     pub span: Span,
+}
+
+/// What follows for a rule from the absence of something that it needs and that may be absent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Optional {
+    /// It is not assessed, and other rules are.
+    NotAssessed,
+    /// It is not assessable, and so the verdict on it.
+    NotAssessable,
+}
+
+impl Optional {
+    /// The reason that rules are told.
+    pub fn told(self, absent: Reason) -> Reason {
+        match self {
+            Self::NotAssessed => Reason::Optional { reason: Box::new(absent) },
+            Self::NotAssessable => absent,
+        }
+    }
+}
+
+/// A channel that records may lack.
+#[derive(Clone, Debug)]
+pub struct OptionalChannel {
+    pub name: String,
+    pub columns: Vec<String>,
+    /// Whether it is one of the track record.
+    pub track: bool,
+    pub optional: Optional,
 }
 
 /// The least and the greatest value of a datum, both allowed.
@@ -160,6 +191,8 @@ pub struct DatumRange {
 pub enum DatumKind {
     Number(Unit),
     Words(Vec<String>),
+    /// A word that the protocol does not list.
+    AnyWord,
     Flag,
     /// The name of the section's campaign, which is not known before the run.
     Campaign,

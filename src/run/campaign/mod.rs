@@ -15,7 +15,7 @@ use crate::result::{
 use crate::run::data_rules::causes;
 use crate::run::describe::traces::{self, Kept, Signals};
 use crate::run::describe::{domain, not_asked, told};
-use crate::run::estimate::extrapolation;
+use crate::run::estimate::{extrapolation, used};
 use crate::run::reduce::{Numbered, Prepared, Progress, Shard};
 use crate::run::sections::{Basis, units};
 use crate::run::values::{SectionValues, Shifts};
@@ -82,6 +82,7 @@ pub fn judge(
     findings.extend(told::findings(plan, facts, &judged.quantities));
     findings.extend(extrapolation::findings(&judged.quantities));
     let (mut traces, mut notes) = (Vec::new(), notes.clone());
+    notes.extend(told::not_assessed(&judged.quantities, &used(units, &evaluated.values)));
     for trace in traces::traces((plan, graph), units, &judged.quantities, settings.traces, signals)
     {
         match trace {

@@ -28,7 +28,8 @@ pub fn track_checks(
 ) -> Result<NodeValues, Fault> {
     let (graph, campaign) = (section.work.graph, section.campaign());
     let mut wanted = questions.wanted(graph, None);
-    let of_checks = graph.checks.iter().flatten().map(|input| input.node);
+    let of_checks = section.checks().filter(|(_, absent)| absent.is_none());
+    let of_checks = of_checks.flat_map(|((_, inputs), _)| inputs.iter().map(|input| input.node));
     wanted.extend(of_checks.filter(|&node| graph.nodes[node].track));
     let there = || match campaign.record_source(RecordKind::Track, &section.unit.cell) {
         Ok(_) => Ok(true),
@@ -44,8 +45,10 @@ pub fn track_checks(
     } else {
         NodeValues::NONE
     };
-    for (check, inputs) in section.work.plan.checks.iter().zip(&graph.checks) {
-        let result = if of_records(graph, inputs) {
+    for ((check, inputs), absent) in section.checks() {
+        let result = if let Some(absent) = absent {
+            result(check, (None, Reason::NotChecked { reason: Box::new(absent) }))
+        } else if of_records(graph, inputs) {
             // Replaced after both records are evaluated.
             result(check, (None, Reason::RecordsNotEvaluated))
         } else {
@@ -68,8 +71,8 @@ fn of_records(graph: &Graph, inputs: &[InputNode]) -> bool {
 pub fn record_checks(sides: &Sides<'_>, values: &mut SectionValues) {
     let Work { plan, graph, .. } = *sides.section.work;
     let side = if plan.reads(Side::Measured) { InputSide::Measured } else { InputSide::Simulated };
-    for (index, (check, inputs)) in plan.checks.iter().zip(&graph.checks).enumerate() {
-        if !of_records(graph, inputs) {
+    for (index, ((check, inputs), absent)) in sides.section.checks().enumerate() {
+        if absent.is_some() || !of_records(graph, inputs) {
             continue;
         }
         let of_pair = |(record, two): (Option<RecordName>, Two<'_>)| {

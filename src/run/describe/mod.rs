@@ -6,7 +6,7 @@
 //! | `reports` | estimates without a limit |
 //! | `spreads` | how far several records of one side are from each other |
 //! | `traces` | signals for plots |
-//! | `told`, `not_asked` | findings about vehicle data, and about rules that were not asked |
+//! | `told`, `not_asked` | findings about vehicle data, and about what was not assessed or asked |
 
 pub mod domain;
 pub mod not_asked;

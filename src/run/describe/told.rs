@@ -1,10 +1,12 @@
 //! Findings about the vehicle data: assumed units, and limits with factors that depend on these
-//! data.
+//! data; what is not assessed.
 
 use crate::check::plan::Plan;
 use crate::result::{
-    DataItem, Datum, Finding, FindingData, LimitFactor, Occurrence, QuantityResult,
+    DataItem, Datum, Finding, FindingData, LimitFactor, Occurrence, QuantityResult, Reason, Remark,
+    StatisticResult,
 };
+use crate::run::estimate::{Used, absent};
 use crate::run::sections::{Facts, Vehicle, is_dimensioned, vehicle_item};
 
 /// Code of the finding about units that the vehicle file does not state.
@@ -20,6 +22,30 @@ pub fn findings(plan: &Plan, facts: &Facts, quantities: &[QuantityResult]) -> Ve
         .filter_map(|vehicle| assumed(plan, vehicle))
         .chain(multiplied(quantities))
         .collect()
+}
+
+/// The quantities that are not assessed, or only in part, for want of something optional.
+pub fn not_assessed(quantities: &[QuantityResult], used: &Used<'_>) -> Vec<Remark> {
+    let of_quantity = |(index, quantity): (usize, &QuantityResult)| {
+        let optional = |reason: &&Reason| reason.is_of_optional();
+        let of_limit = |one: &StatisticResult| {
+            let reason = Box::new(one.reason.clone().filter(Reason::is_of_optional)?);
+            Some(Reason::OfEstimate { title: one.title.clone(), scope: None, reason })
+        };
+        let mut reasons: Vec<Reason> = quantity.statistics.iter().filter_map(of_limit).collect();
+        if reasons.is_empty() {
+            reasons.extend(quantity.reason.iter().filter(optional).cloned());
+            let of_some = || absent(index, used).filter(|_| !quantity.values.is_empty());
+            reasons.extend(of_some());
+        }
+        reasons.dedup();
+        let in_part =
+            quantity.holds.is_some() || quantity.statistics.iter().any(|one| one.holds.is_some());
+        let remark =
+            |reason| Remark::NotAssessed { quantity: quantity.id.clone(), in_part, reason };
+        reasons.into_iter().map(remark).collect::<Vec<_>>()
+    };
+    quantities.iter().enumerate().flat_map(of_quantity).collect()
 }
 
 /// One finding for all numbers without a unit whose size depends on one.

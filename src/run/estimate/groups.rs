@@ -88,6 +88,9 @@ impl<'a> Group<'a> {
                 Err(reason) => return vec![RowGroup { members: Err(reason), ..empty }],
             }
         }
+        if let Some(reason) = absent_key(&scope.each, &inside) {
+            return vec![RowGroup { members: Err(reason), ..empty }];
+        }
         let everywhere = RowGroup { zones: Vec::new(), ..empty.clone() };
         let meets =
             |member: &Member<'_>| everywhere.has_section(member.unit, self.facts) == Ok(true);
@@ -177,6 +180,22 @@ impl<'a> Group<'a> {
             }
         }
     }
+}
+
+/// Why rows form no groups: an optional column that keys name is absent.
+fn absent_key(keys: &[Key], inside: &[Member<'_>]) -> Option<Reason> {
+    let columns = || {
+        keys.iter().filter_map(|key| match key {
+            Key::Column(index) => Some(*index),
+            _ => None,
+        })
+    };
+    let of = |member: &Member<'_>| {
+        let mut reasons =
+            columns().filter_map(|index| member.unit.columns[index].as_ref().err().cloned());
+        reasons.find(Reason::is_of_optional)
+    };
+    inside.iter().find_map(of)
 }
 
 impl<'a> RowGroup<'a> {

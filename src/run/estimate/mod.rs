@@ -15,5 +15,5 @@ mod rows;
 mod table;
 
 pub use groups::{Closeness, Group, RowGroup};
-pub use rows::{Rows, TooFew, used};
+pub use rows::{Rows, TooFew, Used, absent, used};
 pub use table::{Member, Table, count_independent};

@@ -52,7 +52,8 @@ impl<'a> Rows<'a> {
         let pairs = pairs(plan, &members);
         let group = Group { plan, facts, quantity: Some(quantity), members: &members, table: &[] };
         let too_few = too_few(quantity, &group);
-        let reason = if let Some(reason) = impossible(index, used) {
+        let absent = || absent(index, used).filter(|_| members.is_empty());
+        let reason = if let Some(reason) = impossible(index, used).or_else(absent) {
             Some(reason)
         } else if members.is_empty() && quantity.evaluation.of_repeats() {
             Some(Reason::NoRepeats)
@@ -162,9 +163,17 @@ fn whatever_the_records(
 /// Why a quantity cannot be evaluated in some of the sections: the first of them in full.
 fn impossible(index: usize, used: &Used<'_>) -> Option<Reason> {
     let mut found = used.iter().filter_map(|(unit, values)| {
-        let (_, reason) = values.impossible.iter().find(|(quantity, _)| *quantity == index)?;
+        let mut own = values.impossible.iter().filter(|(quantity, _)| *quantity == index);
+        let (_, reason) = own.find(|(_, reason)| !reason.is_of_optional())?;
         Some((unit.name.clone(), Box::new(reason.clone())))
     });
     let (section, reason) = found.next()?;
     Some(Reason::NotEvaluated { section, reason, others: found.count() })
+}
+
+/// Why a quantity is not evaluated in some of the sections, for want of something optional.
+pub fn absent(index: usize, used: &Used<'_>) -> Option<Reason> {
+    let all = used.iter().flat_map(|(_, values)| &values.impossible);
+    let mut own = all.filter(|(quantity, reason)| *quantity == index && reason.is_of_optional());
+    own.next().map(|(_, reason)| reason.clone())
 }

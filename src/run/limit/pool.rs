@@ -258,10 +258,12 @@ pub fn pool(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues]
         values,
         numbers: numbered.map(|(number, unit)| (unit.name.as_str(), number)).collect(),
     };
+    let rows_reason = |index: usize| rows[index].reason.as_ref();
     let of_quantity = |&index: &usize| {
         let (quantity, members) = (&plan.quantities[index], &rows[index].members);
         let rows = Group { plan, facts, quantity: Some(quantity), members, table: &table };
-        making.quantity(index, &Judging { quantity, rows, too_few: &[] })
+        let absent = rows_reason(index).is_some_and(Reason::is_of_optional);
+        making.quantity(index, &Judging { quantity, rows, too_few: &[] }, absent)
     };
     let section = |unit: &Unit| Section {
         name: unit.name.clone(),
@@ -289,7 +291,8 @@ impl Making<'_> {
         self.numbers.get(member.unit.name.as_str()).copied()
     }
 
-    fn quantity(&self, index: usize, judging: &Judging<'_>) -> PooledQuantity {
+    /// One that is not assessed has no limits.
+    fn quantity(&self, index: usize, judging: &Judging<'_>, absent: bool) -> PooledQuantity {
         let quantity = judging.quantity;
         let of_section = |(unit, values): (&Unit, &SectionValues)| {
             let rows = values.rows.get(index).filter(|_| unit.fault.is_none());
@@ -300,10 +303,11 @@ impl Making<'_> {
         };
         let sections = || self.units.iter().zip(self.values);
         let impossible = sections().any(|(unit, values)| {
-            unit.fault.is_none() && values.impossible.iter().any(|(at, _)| *at == index)
+            let mut own = values.impossible.iter().filter(|(at, _)| *at == index);
+            unit.fault.is_none() && own.any(|(_, reason)| !reason.is_of_optional())
         });
         let mut limits = Vec::new();
-        for (at, limit) in quantity.limits.iter().enumerate() {
+        for (at, limit) in quantity.limits.iter().enumerate().filter(|_| !absent) {
             for part in judging.rows.parts(&limit.scope) {
                 limits.extend(self.limit((index, at), judging, &part));
             }

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use indexmap::IndexSet;
 
 use crate::check::plan::{
-    Axis, Datum, DatumKind, Domain, InputSide, Kind, Plan, Quantity, Scalar, Side,
+    Axis, Datum, DatumKind, Domain, InputSide, Kind, Optional, Plan, Quantity, Scalar, Side,
 };
 use crate::data::campaign::POINT_KEY;
 use crate::data::sites;
@@ -248,14 +248,15 @@ fn datum_need(datum: &Datum, users: Users) -> DatumNeed {
         Scalar::Flag(flag) => flag.to_string(),
     });
     let range = datum.range.as_ref().map(|range| range.words.clone());
-    let default = default.or_else(|| datum.may_be_absent.then(|| NOT_STATED.to_string()));
+    let default = default.or_else(|| datum.optional.map(|_| NOT_STATED.to_string()));
     DatumNeed {
         key: datum.key.clone(),
         title: datum.title.clone(),
         unit: unit.map(|unit| unit.text.clone()),
         words,
         range,
-        required: default.is_none() || (datum.may_be_absent && users.of_requirement),
+        required: default.is_none()
+            || (datum.optional == Some(Optional::NotAssessable) && users.of_requirement),
         default,
         users,
     }
@@ -369,12 +370,18 @@ fn channels(plan: &Plan, graph: &Graph) -> Vec<ChannelNeed> {
             record: Side::ALL.get(record).map_or(TRACK, |side| side.in_words()),
             channel: found.map(|(channel, _)| channel.clone()),
             unit: unit.map_or_else(String::new, |unit| unit.text.clone()),
+            required: required && !optional(plan, &column, record == TRACK_RECORD),
             column,
-            required,
             users,
         }
     };
     columns.read.into_iter().map(channel).collect()
+}
+
+/// Whether records may lack a column.
+fn optional(plan: &Plan, column: &str, track: bool) -> bool {
+    let mut channels = plan.optional.iter().filter(|channel| channel.track == track);
+    channels.any(|channel| channel.columns.iter().any(|known| known == column))
 }
 
 /// Channel and unit of each column, with whether it is of the track record.

@@ -7,11 +7,12 @@ use std::sync::Arc;
 use super::opened::{Fault, Opened, Reading, Stretched, clock, unreadable};
 use super::section_records::Sharing;
 use super::stretch::{Soundness, Stretches};
-use crate::check::plan::Plan;
+use crate::check::plan::{Check, Plan};
 use crate::data::record::Wanted;
 use crate::data::{Campaign, Campaigns, RecordKind, WhichRecord};
-use crate::graph::{Graph, NodeId, Operation};
+use crate::graph::{Graph, InputNode, NodeId, Operation};
 use crate::result::{Reason, Subject};
+use crate::run::sections::columns::Present;
 use crate::run::sections::{Facts, Known, Stretch, Unit, needed};
 
 /// Data used for every record.
@@ -23,10 +24,12 @@ pub struct Work<'a> {
     pub facts: &'a Facts,
     /// All sections; a repeat needs that of its original.
     pub units: &'a [Unit],
-    /// For each campaign and each position of each quantity, whether its channels were recorded.
-    pub present: &'a [Vec<Vec<bool>>],
+    /// For each campaign and quantity, which positions were recorded.
+    pub present: &'a [Vec<Present>],
     /// The same for each position of each plausibility rule.
     pub recorded: &'a [Vec<Vec<bool>>],
+    /// For each campaign and check, why it is not made, if an optional channel is absent.
+    pub unchecked: &'a [Vec<Option<Reason>>],
     /// What is shared with other protocols, of the section that is worked on.
     pub shared: Option<Sharing<'a>>,
     /// Which stretches are sound.
@@ -50,6 +53,27 @@ impl<'a> SectionWork<'a> {
 
     pub fn campaign(&self) -> &'a Campaign {
         self.work.campaigns.get(self.unit.campaign)
+    }
+
+    /// The checks with their inputs, and why one is not made for want of something optional.
+    pub fn checks(
+        &self,
+    ) -> impl Iterator<Item = ((&'a Check, &'a Vec<InputNode>), Option<Reason>)> + use<'a> {
+        let (section, Work { plan, graph, unchecked, .. }) = (*self, *self.work);
+        let checks = plan.checks.iter().zip(&graph.checks).zip(&unchecked[self.unit.campaign]);
+        checks.map(move |(of, absent)| {
+            let nodes = of.1.iter().flat_map(InputNode::nodes).collect();
+            (of, absent.clone().or_else(|| section.absent_case(&nodes)))
+        })
+    }
+
+    /// Why it is not known which case of a signal applies, for want of something optional.
+    pub fn absent_case(&self, nodes: &BTreeSet<NodeId>) -> Option<Reason> {
+        let mut data = self.unit.columns.iter().chain(&self.known.vehicle.data);
+        if !data.any(|datum| datum.as_ref().is_err_and(Reason::is_of_optional)) {
+            return None;
+        }
+        needed(self.work.graph, nodes, &self.known).err().filter(Reason::is_of_optional)
     }
 
     /// What is shared of the section.

@@ -11,12 +11,11 @@ use crate::data::campaign::OFFSET;
 use crate::data::{Campaign, Campaigns};
 use crate::graph::Graph;
 use crate::problem::{Problem, Problems};
-use crate::result::{Remark, SectionOffset};
+use crate::result::{Reason, Remark, SectionOffset};
 use crate::run::data_rules::stop_on_fault;
 use crate::run::record::{Soundness, Stretches, Work};
-use crate::run::sections::{
-    Basis, Facts, Unit, columns, requirements, share_stretches, units, wanted,
-};
+use crate::run::sections::columns::{self, Present, Recorded};
+use crate::run::sections::{Basis, Facts, Unit, requirements, share_stretches, units, wanted};
 use crate::run::values::{SectionValues, Shifts};
 
 /// Called after each record, from any thread.
@@ -29,8 +28,9 @@ pub struct Prepared<'a> {
     pub graph: &'a Graph,
     campaigns: Campaigns<'a>,
     pub basis: Basis,
-    present: Vec<Vec<Vec<bool>>>,
+    present: Vec<Vec<Present>>,
     recorded: Vec<Vec<Vec<bool>>>,
+    unchecked: Vec<Vec<Option<Reason>>>,
     pub soundness: Soundness,
 }
 
@@ -68,14 +68,14 @@ impl<'a> Prepared<'a> {
             return Err(problems);
         }
         let mut notes = Vec::new();
-        let (mut present, mut recorded) = (Vec::new(), Vec::new());
+        let (mut present, mut recorded, mut unchecked) = (Vec::new(), Vec::new(), Vec::new());
         for (number, campaign) in campaigns.iter().enumerate() {
             let units: Vec<&Unit> = units.iter().filter(|unit| unit.campaign == number).collect();
             let seen = columns::seen_columns(plan, campaign, &units);
-            present.push(columns::present_columns(
-                plan, graph, campaign, &seen, &facts, &units, &mut notes,
-            ));
-            recorded.push(columns::recorded_positions(graph, &seen, &facts, &units));
+            let of = Recorded { plan, graph, campaign, facts: &facts, units: &units, seen: &seen };
+            present.push(of.quantities(&mut notes));
+            recorded.push(of.plausibility(&mut notes));
+            unchecked.push(of.checks());
             if plan.reads(Side::Measured) {
                 notes.extend(shifted(campaign));
             }
@@ -90,6 +90,7 @@ impl<'a> Prepared<'a> {
             basis: Basis { facts, units, wanted, notes },
             present,
             recorded,
+            unchecked,
             soundness: Soundness::default(),
         })
     }
@@ -104,6 +105,7 @@ impl<'a> Prepared<'a> {
             units: &self.basis.units,
             present: &self.present,
             recorded: &self.recorded,
+            unchecked: &self.unchecked,
             shared: None,
             soundness: &self.soundness,
             stretches: None,

@@ -11,6 +11,7 @@ use crate::result::{Reason, Subject};
 use crate::run::data_rules::{Questions, plausibility, record_checks, track_checks};
 use crate::run::record::{Fault, SectionWork, Work};
 use crate::run::sections::Unit;
+use crate::run::sections::columns::Present;
 use crate::run::values::{
     Meetings, Original, RecordOfSide, SectionValues, Shifts, Sides, synchronisation,
 };
@@ -29,17 +30,35 @@ pub fn of_section(work: &Work<'_>, unit: &Unit, shifts: &Shifts<'_>) -> Vec<Sect
 /// section that repeats another.
 type Active = Vec<Vec<bool>>;
 
-fn active(section: &SectionWork<'_>) -> Result<Active, Reason> {
+/// And the quantities that are not, for want of something optional.
+fn active(section: &SectionWork<'_>) -> Result<(Active, Vec<(usize, Reason)>), Reason> {
     let SectionWork { work, unit, known } = section;
     let holds = |only: &Option<Expr>| only.as_ref().map_or(Ok(true), |only| flag(only, known));
     let quantities = work.plan.quantities.iter().zip(&work.present[unit.campaign]);
-    let of_quantity = |(quantity, present): (&Quantity, &Vec<bool>)| {
+    let of_quantity = |index: usize, (quantity, present): (&Quantity, &Present)| {
+        let signals = &work.graph.quantities[index].signals;
+        if let Some(reason) = &present.absent {
+            return Err(reason.clone());
+        }
         let all = holds(&quantity.only)?
             && (unit.original.is_some() || !quantity.evaluation.of_repeats());
-        let positions = quantity.positions.iter().zip(present);
+        let mut nodes = BTreeSet::new();
+        signals.iter().for_each(|signal| wanted_of(quantity, signal, &mut nodes));
+        if let Some(reason) = section.absent_case(&nodes) {
+            return Err(reason);
+        }
+        let positions = quantity.positions.iter().zip(&present.positions);
         positions.map(|(position, present)| Ok(all && *present && holds(&position.only)?)).collect()
     };
-    quantities.map(of_quantity).collect()
+    let (mut active, mut absent) = (Active::new(), Vec::new());
+    for (index, (quantity, present)) in quantities.enumerate() {
+        active.push(of_quantity(index, (quantity, present)).or_else(|reason| {
+            let is_absent = present.absent.is_some() || reason.is_of_optional();
+            absent.push((index, reason.clone()));
+            if is_absent { Ok(vec![false; quantity.positions.len()]) } else { Err(reason) }
+        })?);
+    }
+    Ok((active, absent))
 }
 
 fn fill(
@@ -49,8 +68,9 @@ fn fill(
 ) -> Result<Vec<SectionValues>, Fault> {
     let questions = Questions::of(section);
     let track = track_checks(section, &questions, common)?;
-    let active = active(section).map_err(Fault::new)?;
-    let wanted = |side: Side| wanted(section.work, &questions, &active, shifts, side);
+    let (active, absent) = active(section).map_err(Fault::new)?;
+    common.impossible.extend(absent);
+    let wanted = |side: Side| wanted(section, &questions, &active, shifts, side);
     // A record is reduced to numbers before the next one is opened, so that one record is in memory
     // at a time, and of a run one stretch of each.
     let simulated = records(section, Side::Simulated, &wanted(Side::Simulated), common);
@@ -197,7 +217,7 @@ fn quantities(sides: &Sides<'_>, active: &Active, values: &mut SectionValues) {
 
 /// Nodes whose values are needed from the records of one side.
 fn wanted(
-    work: &Work<'_>,
+    section: &SectionWork<'_>,
     questions: &Questions<'_>,
     active: &Active,
     shifts: &Shifts<'_>,
@@ -207,9 +227,11 @@ fn wanted(
         Side::Simulated => InputSide::Simulated,
         Side::Measured => InputSide::Measured,
     };
+    let work = section.work;
     let mut wanted = questions.wanted(work.graph, Some(of_questions));
     of_quantities(work, active, |evaluation| evaluation.reads(side), &mut wanted);
-    let of_checks = work.graph.checks.iter().flatten().flat_map(InputNode::nodes);
+    let of_checks = section.checks().filter(|(_, absent)| absent.is_none());
+    let of_checks = of_checks.flat_map(|((_, inputs), _)| inputs.iter().flat_map(InputNode::nodes));
     wanted.extend(of_checks.filter(|&node| !work.graph.nodes[node].track));
     if shifts.farthest.is_some() {
         wanted.extend(synchronisation::signals(work.graph, active));

@@ -1,17 +1,20 @@
 //! Which positions were recorded, from the column headings of the records.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use indexmap::IndexMap;
 use rayon::prelude::*;
 
 use super::facts::{Facts, needed};
 use super::unit::Unit;
-use crate::check::plan::{Plan, Side};
+use crate::check::plan::{Plan, Quantity, Side};
 use crate::data::record::RecordSource;
 use crate::data::{Campaign, RecordKind, WhichRecord};
-use crate::graph::{Graph, NodeId, Operation};
-use crate::result::{RecordsOf, Remark};
+use crate::graph::{
+    Graph, InputNode, NodeId, Operation, PositionNodes, QuantityNodes, SignalNodes,
+};
+use crate::problem::nearest;
+use crate::result::{Reason, RecordsOf, Remark};
 
 impl Side {
     /// The kind of its records.
@@ -48,98 +51,191 @@ pub fn seen_columns(plan: &Plan, campaign: &Campaign, units: &[&Unit]) -> Seen {
     kinds.flat_map(|kind| campaign.records(kind)).map(seen).collect()
 }
 
-/// Positions of plausibility rules whose columns are in the records; other positions are not
-/// checked.
-pub fn recorded_positions(
-    graph: &Graph,
-    seen: &Seen,
-    facts: &Facts,
-    units: &[&Unit],
-) -> Vec<Vec<bool>> {
-    let there = |node: NodeId| {
-        let track = graph.nodes[node].track;
-        let of_kind =
-            || seen.iter().filter(|(which, _)| (which.kind == RecordKind::Track) == track);
-        reads(graph, node, facts, units)
-            .iter()
-            .all(|column| of_kind().all(|(_, columns)| columns.contains(column)))
-    };
-    graph
-        .plausibility
-        .iter()
-        .map(|rule| {
-            rule.positions
-                .iter()
-                .map(|position| {
-                    position
-                        .own
-                        .into_iter()
-                        .chain(position.inputs.iter().map(|input| input.node))
-                        .all(there)
-                })
-                .collect()
-        })
-        .collect()
+/// A column that a kind of record lacks.
+type Missing = (String, WhichRecord);
+
+/// What of a quantity was recorded in a campaign.
+#[derive(Clone, Debug)]
+pub struct Present {
+    /// For each position, whether it is evaluated.
+    pub positions: Vec<bool>,
+    /// Why none is, for want of an optional channel.
+    pub absent: Option<Reason>,
 }
 
-/// Which signals of which quantities were recorded. A position missing from every record is left
-/// out and is not a fault of each section.
-pub fn present_columns(
-    plan: &Plan,
-    graph: &Graph,
-    campaign: &Campaign,
-    seen: &Seen,
-    facts: &Facts,
-    units: &[&Unit],
-    notes: &mut Vec<Remark>,
-) -> Vec<Vec<bool>> {
-    let called = units.first().and_then(|unit| unit.campaign_name.as_ref());
-    let mut left_out = LeftOut::default();
-    let present = graph
-        .quantities
-        .iter()
-        .zip(&plan.quantities)
-        .map(|(quantity, rule)| {
+/// The rules of a protocol against the columns of a campaign.
+#[derive(Clone, Copy, Debug)]
+pub struct Recorded<'a> {
+    pub plan: &'a Plan,
+    pub graph: &'a Graph,
+    pub campaign: &'a Campaign,
+    pub facts: &'a Facts,
+    pub units: &'a [&'a Unit],
+    pub seen: &'a Seen,
+}
+
+impl Recorded<'_> {
+    /// Positions of plausibility rules whose columns are in the records; other positions are not
+    /// checked. A rule without any, for want of an optional channel, is noted.
+    pub fn plausibility(&self, notes: &mut Vec<Remark>) -> Vec<Vec<bool>> {
+        let mut unchecked: Vec<(Reason, Vec<String>)> = Vec::new();
+        let mut all = Vec::new();
+        for (nodes, rule) in self.graph.plausibility.iter().zip(&self.plan.plausibility) {
+            let missing = |position: &PositionNodes| -> Vec<Missing> {
+                let inputs = position.inputs.iter().map(|input| input.node);
+                let own = position.own.into_iter().chain(inputs);
+                own.flat_map(|node| self.missing(node, |_| true)).collect()
+            };
+            let missing: Vec<Vec<Missing>> = nodes.positions.iter().map(missing).collect();
+            let there: Vec<bool> = missing.iter().map(Vec::is_empty).collect();
+            let absent = self.absent(missing).filter(|_| !there.contains(&true));
+            if let Some(reason) = absent {
+                match unchecked.iter_mut().find(|(known, _)| *known == reason) {
+                    Some((_, rules)) if rules.contains(&rule.title) => {}
+                    Some((_, rules)) => rules.push(rule.title.clone()),
+                    None => unchecked.push((reason, vec![rule.title.clone()])),
+                }
+            }
+            all.push(there);
+        }
+        let note = |(reason, rules)| Remark::RulesNotChecked { rules, reason };
+        notes.extend(unchecked.into_iter().map(note));
+        all
+    }
+
+    /// Why checks are not made, for want of an optional channel.
+    pub fn checks(&self) -> Vec<Option<Reason>> {
+        let of_check = |inputs: &Vec<InputNode>| {
+            let missing = inputs.iter().flat_map(InputNode::nodes);
+            self.absent(vec![missing.flat_map(|node| self.missing(node, |_| true)).collect()])
+        };
+        self.graph.checks.iter().map(of_check).collect()
+    }
+
+    /// Which signals of which quantities were recorded. A position missing from every record is
+    /// left out and is not a fault of each section.
+    pub fn quantities(&self, notes: &mut Vec<Remark>) -> Vec<Present> {
+        let mut left_out = LeftOut::default();
+        let mut of_quantity = |(nodes, rule): (&QuantityNodes, &Quantity)| {
             let read = |kind: RecordKind| {
                 Side::ALL.into_iter().any(|side| side.kind() == kind && rule.evaluation.reads(side))
             };
-            let all: Vec<Vec<(String, WhichRecord)>> = quantity
-                .signals
-                .iter()
-                .map(|signal| {
-                    let mut missing: Vec<(String, WhichRecord)> = Vec::new();
-                    for column in reads(graph, signal.compare, facts, units) {
-                        for (which, columns) in seen.iter().filter(|(which, _)| read(which.kind)) {
-                            if !columns.contains(&column) {
-                                missing.push((column.clone(), *which));
-                            }
-                        }
+            let missing = |signal: &SignalNodes| self.missing(signal.compare, read);
+            let all: Vec<Vec<Missing>> = nodes.signals.iter().map(missing).collect();
+            let mut positions: Vec<bool> = all.iter().map(Vec::is_empty).collect();
+            let mut absent = None;
+            if positions.contains(&true) {
+                for (column, which) in all.iter().flatten() {
+                    let record = self.records_of(*which);
+                    let known = left_out.entry(column.clone()).or_default();
+                    if !known.contains(&record) {
+                        known.push(record);
                     }
-                    missing
-                })
-                .collect();
-            // If no position is recorded, the name of the channel is wrong. This is a fault and is
-            // reported.
-            let none = all.iter().all(|missing| !missing.is_empty());
-            all.iter()
-                .map(|missing| {
-                    if !none {
-                        for (column, which) in missing {
-                            let records = campaign.record_in_words(*which);
-                            let record = RecordsOf { records, campaign: called.cloned() };
-                            let known = left_out.entry(column.clone()).or_default();
-                            if !known.contains(&record) {
-                                known.push(record);
-                            }
-                        }
-                    }
-                    none || missing.is_empty()
-                })
-                .collect()
-        })
-        .collect();
-    notes.extend(lacking(left_out));
-    present
+                }
+            } else {
+                absent = self.absent(all);
+                // If no position is recorded, and one should be, the name of the channel is wrong.
+                // This is a fault and is reported.
+                positions.fill(absent.is_none());
+            }
+            Present { positions, absent }
+        };
+        let quantities = self.graph.quantities.iter().zip(&self.plan.quantities);
+        let present = quantities.map(&mut of_quantity).collect();
+        notes.extend(lacking(left_out));
+        present
+    }
+
+    /// The columns that a node needs and that records of a kind lack, in all sections.
+    fn missing(&self, node: NodeId, reads: impl Fn(RecordKind) -> bool) -> Vec<Missing> {
+        let track = self.graph.nodes[node].track;
+        let of_kind = |which: WhichRecord| {
+            (which.kind == RecordKind::Track) == track && (track || reads(which.kind))
+        };
+        let is_track = |(which, _): &(WhichRecord, _)| which.kind == RecordKind::Track;
+        let no_track = track && !self.seen.iter().any(is_track);
+        let mut found = Vec::new();
+        for column in self.reads(node) {
+            let kinds = self.seen.iter().filter(|(which, _)| of_kind(*which));
+            let lacking = kinds.filter(|(_, columns)| !columns.contains(&column));
+            found.extend(lacking.map(|(which, _)| (column.clone(), *which)));
+            found.extend(no_track.then(|| (column, RecordKind::Track.into())));
+        }
+        found
+    }
+
+    /// Columns that a node needs in some section.
+    fn reads(&self, node: NodeId) -> BTreeSet<String> {
+        let Self { graph, facts, units, .. } = *self;
+        let mut read = BTreeSet::new();
+        let most = graph
+            .columns_of([node])
+            .into_iter()
+            .map(|(column, _)| column)
+            .collect::<BTreeSet<_>>()
+            .len();
+        for unit in units {
+            // Most nodes need the same columns in all sections.
+            if read.len() == most {
+                break;
+            }
+            // Where it cannot be determined which signal applies, the section is refused when it is
+            // evaluated.
+            for id in needed(graph, &BTreeSet::from([node]), &unit.known(facts)).unwrap_or_default()
+            {
+                if let Operation::Read { column } = &graph.nodes[id].operation {
+                    read.insert(column.clone());
+                }
+            }
+        }
+        read
+    }
+
+    /// Why nothing is evaluated at positions with missing columns: those of one of them are all
+    /// of optional channels.
+    fn absent(&self, positions: Vec<Vec<Missing>>) -> Option<Reason> {
+        let optional = |(column, which): &Missing| {
+            let track = which.kind == RecordKind::Track;
+            let all = self.plan.optional.iter().enumerate();
+            let mut own = all.filter(|(_, channel)| channel.track == track);
+            own.find(|(_, channel)| channel.columns.contains(column)).map(|(at, _)| at)
+        };
+        // Columns and records by channel.
+        let mut channels: BTreeMap<usize, (Vec<String>, Vec<WhichRecord>)> = BTreeMap::new();
+        let explained = |missing: &Vec<Missing>| {
+            !missing.is_empty() && missing.iter().all(|one| optional(one).is_some())
+        };
+        for one in positions.into_iter().filter(explained).flatten() {
+            let (columns, records) = channels.entry(optional(&one)?).or_default();
+            if !columns.contains(&one.0) {
+                columns.push(one.0);
+            }
+            if !records.contains(&one.1) {
+                records.push(one.1);
+            }
+        }
+        let reason = |(at, (columns, records)): (usize, (Vec<String>, Vec<WhichRecord>))| {
+            let channel = &self.plan.optional[at];
+            let others = self.seen.iter().filter(|(which, _)| records.contains(which));
+            let near = columns.iter().find_map(|column| {
+                nearest(column, others.clone().flat_map(|(_, all)| all).map(String::as_str))
+            });
+            channel.optional.told(Reason::NotRecorded {
+                channel: channel.name.clone(),
+                near: near.map(Into::into),
+                records: records.iter().map(|which| self.records_of(*which)).collect(),
+                columns,
+            })
+        };
+        let both =
+            |first, second| Reason::Both { first: Box::new(first), second: Box::new(second) };
+        channels.into_iter().map(reason).reduce(both)
+    }
+
+    fn records_of(&self, which: WhichRecord) -> RecordsOf {
+        let campaign = self.units.first().and_then(|unit| unit.campaign_name.clone());
+        RecordsOf { records: self.campaign.record_in_words(which), campaign }
+    }
 }
 
 /// Columns that are in no record of some records, in the order of the protocol.
@@ -156,29 +252,4 @@ fn lacking(left_out: LeftOut) -> Vec<Remark> {
     }
     let remark = |(channels, records)| Remark::LackingChannels { channels, records };
     groups.into_iter().map(remark).collect()
-}
-
-/// Columns that a node needs in some section.
-fn reads(graph: &Graph, node: NodeId, facts: &Facts, units: &[&Unit]) -> BTreeSet<String> {
-    let mut read = BTreeSet::new();
-    let most = graph
-        .columns_of([node])
-        .into_iter()
-        .map(|(column, _)| column)
-        .collect::<BTreeSet<_>>()
-        .len();
-    for unit in units {
-        // Most nodes need the same columns in all sections.
-        if read.len() == most {
-            break;
-        }
-        // Where it cannot be determined which signal applies, the section is refused when it is
-        // evaluated.
-        for id in needed(graph, &BTreeSet::from([node]), &unit.known(facts)).unwrap_or_default() {
-            if let Operation::Read { column } = &graph.nodes[id].operation {
-                read.insert(column.clone());
-            }
-        }
-    }
-    read
 }

@@ -124,9 +124,17 @@ pub fn item(datum: &Datum, value: Option<&Scalar>) -> DataItem {
     }
 }
 
-/// The reason why a datum that may be absent has no value.
+/// The reason why there is no value, of a datum that may be absent.
+pub fn told(datum: &Datum, absent: Reason) -> Reason {
+    match datum.optional {
+        Some(optional) => optional.told(absent),
+        None => absent,
+    }
+}
+
+/// The reason why a datum of the vehicle that may be absent has no value.
 pub fn absent(datum: &Datum) -> Reason {
-    Reason::VehicleDataNotStated { key: datum.key.clone() }
+    told(datum, Reason::VehicleDataNotStated { key: datum.key.clone() })
 }
 
 /// Printed in place of a value that the vehicle file does not state.
@@ -155,7 +163,7 @@ fn vehicle_datum(
         if let Some(default) = &datum.default {
             return Some((Ok(default.clone()), false));
         }
-        if datum.may_be_absent {
+        if datum.optional.is_some() {
             return Some((Err(absent(datum)), false));
         }
         let known: Vec<&str> =
@@ -211,7 +219,7 @@ fn with_unit(kind: &DatumKind) -> String {
         DatumKind::Number(unit) if unit.text != "-" => format!(" with its unit, such as {unit}"),
         DatumKind::Words(words) => format!(", one of {}", words.join(", ")),
         DatumKind::Flag => ", true or false".into(),
-        DatumKind::Number(_) | DatumKind::Campaign => String::new(),
+        DatumKind::Number(_) | DatumKind::AnyWord | DatumKind::Campaign => String::new(),
     }
 }
 
@@ -254,7 +262,7 @@ pub fn scalar(kind: &DatumKind, text: &str) -> Result<Scalar, String> {
             }
             _ => Err(format!("`{text}` is not a number (in {unit})")),
         },
-        DatumKind::Campaign => Ok(Scalar::Word(text.to_string())),
+        DatumKind::AnyWord | DatumKind::Campaign => Ok(Scalar::Word(text.to_string())),
         DatumKind::Flag => match text {
             "true" => Ok(Scalar::Flag(true)),
             "false" => Ok(Scalar::Flag(false)),

@@ -36,11 +36,13 @@ pub fn check_data(plan: &Plan, facts: &Facts, units: &mut [Unit]) {
             checks.extend(length(plan, &known, zone));
         }
         for check in checks {
-            // A datum missing from the vehicle file is not a fault of the section. The section is
-            // used, and a finding reports it.
+            // A datum missing from the vehicle file, or an optional one, is not a fault of the
+            // section. The section is used, and a finding reports it.
             let untold = check.name == "length" && check.holds.is_none() && {
                 let minimum = zone.and_then(|zone| zone.minimum_length.as_ref());
-                minimum.is_some_and(|minimum| !not_stated(minimum, facts.of(unit)).is_empty())
+                check.says.is_of_optional()
+                    || minimum
+                        .is_some_and(|minimum| !not_stated(minimum, facts.of(unit)).is_empty())
             };
             if check.holds != Some(true) && !untold {
                 let zone = unit.zone.clone().unwrap_or_default();
@@ -141,7 +143,7 @@ pub struct Unchecked<'a> {
     pub title: &'a str,
     pub says: &'a Reason,
     pub sections: Sections,
-    /// Whether the protocol requires it.
+    /// Whether the protocol requires it: not if it needs something optional.
     pub required: bool,
 }
 
@@ -161,7 +163,8 @@ pub fn unchecked<'a>(plan: &Plan, units: &'a [Unit]) -> Vec<Unchecked<'a>> {
             other => other,
         },
         sections: Sections::of(&names, units.len()),
-        required: plan.checks.iter().all(|rule| rule.name != check.name || rule.required),
+        required: plan.checks.iter().all(|rule| rule.name != check.name || rule.required)
+            && !check.says.is_of_optional(),
     };
     found.into_values().map(one).collect()
 }

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::facts::{Facts, item, scalar};
+use super::facts::{Facts, item, scalar, told};
 use super::unit::Unit;
 use crate::check::plan::{Datum, DatumKind, Plan, Scalar};
 use crate::data::campaign::Run;
@@ -147,7 +147,7 @@ fn of_campaign(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Vec
         kind: DatumKind::Number(axis.clone()),
         default: None,
         range: None,
-        may_be_absent: false,
+        optional: None,
         span: plan.axis.span.clone(),
     };
     let (start, end) = (extent_datum("start"), extent_datum("end"));
@@ -221,9 +221,9 @@ fn whole_record(plan: &Plan, campaign: &Campaign, name: &Cell, site: usize) -> U
         .columns
         .iter()
         .map(|datum| {
-            called(datum)
-                .or_else(|| datum.default.clone())
-                .ok_or_else(|| Reason::UnknownOfWholeRecord { column: datum.name.clone() })
+            called(datum).or_else(|| datum.default.clone()).ok_or_else(|| {
+                told(datum, Reason::UnknownOfWholeRecord { column: datum.name.clone() })
+            })
         })
         .collect();
     Unit::new(name, site, columns)
@@ -239,7 +239,8 @@ pub fn of_run(datum: &Datum, run: &Run, campaign: &str) -> Result<Scalar, Reason
     }
     let (column, run_name) = (datum.key.clone(), run.name.value.clone());
     let Some(fact) = run.fact(&datum.key) else {
-        return datum.default.clone().ok_or(Reason::NotStatedOfRun { column, run: run_name });
+        let absent = || told(datum, Reason::NotStatedOfRun { column, run: run_name });
+        return datum.default.clone().ok_or_else(absent);
     };
     let kind = match (&datum.kind, &fact.unit) {
         (DatumKind::Number(expected), Some(unit)) => match OfMeasure::parse(unit) {
@@ -267,7 +268,7 @@ pub fn column_missing(
         return false;
     }
     let Some(index) = table.column(&datum.key) else {
-        if datum.default.is_some() {
+        if datum.default.is_some() || datum.optional.is_some() {
             return false;
         }
         let known: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
@@ -322,7 +323,7 @@ impl Row<'_> {
                 return of_run(datum, run, self.campaign)
                     .map_err(|reason| CellFault { reason, ill_formed: true });
             }
-            return nothing(Reason::NoColumn { column });
+            return nothing(told(datum, Reason::NoColumn { column }));
         };
         let text = self.table.cell(self.row, index).map_or("", |cell| cell.value.trim());
         let (file, row) = self.place();

@@ -92,7 +92,7 @@ pub fn judge(
 
 /// One reason for all parameters that have no value.
 fn parameters_not_stated(plan: &Plan) -> Option<Reason> {
-    let names = plan.parameters.iter().filter(|one| !one.stated).map(|one| one.name.clone());
+    let names = plan.parameters.iter().filter(|one| one.lacking).map(|one| one.name.clone());
     let parameters: Vec<String> = names.collect();
     (!parameters.is_empty()).then_some(Reason::ParametersNotStated { parameters })
 }
@@ -200,17 +200,25 @@ fn quantity_result(judging: &Judging<'_>, reason: Option<Reason>) -> (QuantityRe
             }
         }
     }
+    let undefined: Vec<Reason> = statistics
+        .iter()
+        .filter(|statistic| statistic.holds.is_none())
+        .map(|statistic| Reason::OfEstimate {
+            title: statistic.title.clone(),
+            scope: statistic.scope.told(),
+            reason: Box::new(statistic.reason.clone().unwrap_or(Reason::NoValue)),
+        })
+        .collect();
+    // What is not assessed hides nothing that cannot be.
     let undefined =
-        statistics.iter().find(|statistic| statistic.holds.is_none()).map(|statistic| {
-            Reason::OfEstimate {
-                title: statistic.title.clone(),
-                scope: statistic.scope.told(),
-                reason: Box::new(statistic.reason.clone().unwrap_or(Reason::NoValue)),
-            }
-        });
+        undefined.iter().find(|reason| !reason.is_of_optional()).or(undefined.first()).cloned();
     let met = statistics.iter().all(|statistic| statistic.holds == Some(true));
     let reason = reason.or(undefined).or_else(|| if met { judging.fails_alone() } else { None });
-    let holds = reason.is_none().then_some(met);
+    let fails_beside = || {
+        let not_assessed = reason.as_ref().is_some_and(Reason::is_of_optional);
+        (not_assessed && statistics.iter().any(|one| one.holds == Some(false))).then_some(false)
+    };
+    let holds = if reason.is_none() { Some(met) } else { fails_beside() };
     let show = |value: f64| quantity.unit.from_si(value);
     let limit_of = |member: &Member<'_>| limits.get(&std::ptr::from_ref(member.row));
     let value = |member: &Member<'_>| PairValue {

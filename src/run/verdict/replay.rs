@@ -5,7 +5,7 @@ use indexmap::IndexSet;
 
 use super::judge::{Judged, Told, judge};
 use crate::check::evaluate::number;
-use crate::check::plan::{Evaluation, Plan, Records, Scalar};
+use crate::check::plan::{Datum, Evaluation, Optional, Plan, Records, Scalar};
 use crate::graph::{Graph, NodeId};
 use crate::result::{
     Certification, Consequence, DataItem, DomainResult, Finding, Reason, SectionResult,
@@ -80,6 +80,21 @@ pub fn replay(plan: &Plan, results: &Certification) -> Result<Replayed, String> 
             rows.push(row);
         }
     }
+    for (index, quantity) in plan.quantities.iter().enumerate() {
+        let found = results.quantities.iter().find(|found| found.id == quantity.id);
+        let reason =
+            found.filter(|found| found.values.is_empty()).and_then(|one| one.reason.as_ref());
+        let of_rows = |reason: &&Reason| {
+            reason.is_of_optional() && !matches!(reason, Reason::OfEstimate { .. })
+        };
+        if let Some(reason) = reason.filter(of_rows) {
+            if !is_declared(plan, reason) {
+                contradictions.push(format!("{}: what it lacks is not optional", quantity.id));
+            }
+            let absent = (index, reason.clone());
+            values.iter_mut().for_each(|values| values.impossible.push(absent.clone()));
+        }
+    }
     contradictions.extend(refused(plan, &facts, &units));
     contradictions.extend(barred(&units, &results.findings));
     for unit in &mut units {
@@ -93,6 +108,32 @@ pub fn replay(plan: &Plan, results: &Certification) -> Result<Replayed, String> 
         application,
         contradictions,
     })
+}
+
+/// Whether the protocol says that what is absent may be.
+fn is_declared(plan: &Plan, reason: &Reason) -> bool {
+    let assessed = |optional| optional == Some(Optional::NotAssessed);
+    let datum = |data: &[Datum], name: &String| {
+        data.iter().any(|datum| datum.key == *name && assessed(datum.optional))
+    };
+    match reason {
+        Reason::Optional { reason } => match reason.as_ref() {
+            Reason::NotRecorded { channel, .. } => {
+                plan.optional.iter().any(|one| one.name == *channel && assessed(Some(one.optional)))
+            }
+            Reason::NoColumn { column }
+            | Reason::UnknownOfWholeRecord { column }
+            | Reason::NotStatedOfRun { column, .. } => datum(&plan.columns, column),
+            Reason::VehicleDataNotStated { key } => datum(&plan.vehicle, key),
+            Reason::ParameterNotStated { parameter } => {
+                plan.parameters.iter().any(|one| one.name == *parameter && !one.lacking)
+            }
+            _ => false,
+        },
+        Reason::About { reason, .. } => is_declared(plan, reason),
+        Reason::Both { first, second } => is_declared(plan, first) && is_declared(plan, second),
+        _ => false,
+    }
 }
 
 /// Which of several values a recorded one is, by its words.
@@ -138,7 +179,7 @@ fn vehicle(plan: &Plan, of: Option<String>, data: &[&str]) -> Result<Vehicle, St
     }
     let read = plan.vehicle.iter().zip(data);
     let vehicle = read.map(|(datum, text)| match *text {
-        NOT_STATED if datum.may_be_absent => Ok(Err(absent(datum))),
+        NOT_STATED if datum.optional.is_some() => Ok(Err(absent(datum))),
         text => {
             scalar(&datum.kind, text).map(Ok).map_err(|says| format!("`{}`: {says}", datum.key))
         }
@@ -152,6 +193,10 @@ fn units(plan: &Plan, results: &Certification) -> Result<Vec<Unit>, String> {
     let nowhere = Source::new("results.json", "").whole();
     let place = |name: &str| results.sections.iter().position(|other| other.section == name);
     let vehicles = vehicles(results);
+    let is_absent = |item: &DataItem| {
+        let all = results.sections.iter().flat_map(|section| &section.columns);
+        all.filter(|other| other.name == item.name).all(|other| other.value.is_empty())
+    };
     let one = |section: &SectionResult| {
         if section.columns.len() != plan.columns.len() {
             let (asked, found) = (plan.columns.len(), section.columns.len());
@@ -160,14 +205,17 @@ fn units(plan: &Plan, results: &Certification) -> Result<Vec<Unit>, String> {
                 section.section
             ));
         }
-        let column =
-            |(datum, item): (&crate::check::plan::Datum, &DataItem)| -> Result<Scalar, Reason> {
-                if item.value.is_empty() {
-                    Err(Reason::EmptyDatum { column: datum.key.clone() })
-                } else {
-                    scalar(&datum.kind, &item.value).map_err(Reason::said)
-                }
-            };
+        let column = |(datum, item): (&Datum, &DataItem)| -> Result<Scalar, Reason> {
+            if item.value.is_empty() {
+                let column = datum.key.clone();
+                Err(match datum.optional {
+                    Some(optional) if is_absent(item) => optional.told(Reason::NoColumn { column }),
+                    _ => Reason::EmptyDatum { column },
+                })
+            } else {
+                scalar(&datum.kind, &item.value).map_err(Reason::said)
+            }
+        };
         let none = || format!("section {}: the result has no data of its vehicle", section.section);
         let cell = Spanned::new(section.section.clone(), nowhere.clone());
         let site = place(&section.site).or_else(|| place(&section.section)).unwrap_or_default();

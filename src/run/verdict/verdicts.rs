@@ -98,11 +98,22 @@ fn by_limits(plan: &Plan, given: &Given<'_>, rule: Rule, about: &[usize]) -> Dec
     let mut missing = given.barred.clone();
     // A quantity without limits is reported and has no effect.
     let without = |quantity: &&QuantityResult| quantity.statistics.is_empty();
-    missing.extend(quantities().filter(|quantity| !without(quantity)).filter_map(|quantity| {
+    // What needs something optional that is absent is not assessed, and the rest is.
+    let with_reason = quantities().filter(|quantity| !without(quantity)).filter_map(|quantity| {
         Some(quantity.reason.clone()?.about(Subject::Quantity, &quantity.id))
-    }));
+    });
+    let (absent, lacking): (Vec<Reason>, Vec<Reason>) =
+        with_reason.partition(Reason::is_of_optional);
+    missing.extend(lacking);
     if quantities().all(|quantity| without(&quantity)) {
         missing.push(without_criterion(plan, about));
+    }
+    let is_open = |quantity: &&QuantityResult| quantity.holds.is_none() && !without(quantity);
+    let open_limits = quantities().flat_map(|quantity| &quantity.statistics);
+    let open_limits = open_limits.filter(|one| one.holds.is_none()).count();
+    let assessed = quantities().flat_map(|one| &one.statistics).any(|one| one.holds.is_some());
+    if missing.is_empty() && !assessed {
+        missing.extend(absent.iter().cloned());
     }
     if !missing.is_empty() {
         return Decided::not_assessable(missing);
@@ -119,6 +130,15 @@ fn by_limits(plan: &Plan, given: &Given<'_>, rule: Rule, about: &[usize]) -> Dec
     };
     if holds {
         return Decided::holds();
+    }
+    // With what is not assessed, it might.
+    let might = match rule {
+        Rule::EveryLimit => false,
+        Rule::AtLeastQuantities(needed) => holding + quantities().filter(is_open).count() >= needed,
+        Rule::AtLeastLimits(needed) => limits_holding + open_limits >= needed,
+    };
+    if might {
+        return Decided::not_assessable(absent);
     }
     match rule {
         Rule::EveryLimit => {}

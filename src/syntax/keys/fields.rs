@@ -1,6 +1,6 @@
 //! Fields: how they are put into the table, and those that many blocks have.
 
-use super::{EACH, Key, Sort};
+use super::{EACH, Key, OPTIONAL as OPTIONAL_WORD, Sort};
 
 pub(super) const fn text(word: &'static str, about: &'static str, example: &'static str) -> Key {
     Key { word, sort: Sort::Text, many: false, pattern: false, about, example }
@@ -23,6 +23,11 @@ pub(super) const FOR_EACH: Key = many(phrase(
     "Makes the block a family: one block for each member, which replaces `{variable}`.",
     "channel in Y, Q and part in magnitude, phase",
 ));
+pub(super) const OPTIONAL: Key = phrase(
+    OPTIONAL_WORD,
+    "It may be absent. What needs it is then `not assessed`, and the rest is, or `not assessable`, and with it the verdict.",
+    "not assessed",
+);
 pub(super) const CLAUSE: Key =
     text("clause", "Clause of the standard for the rule.", "Annex T, T.3");
 pub(super) const SOURCE: Key =

@@ -1,7 +1,7 @@
 //! The table of blocks and fields.
 
 use super::fields::{
-    CLAUSE, FOR_EACH, NOTE, SOURCE, UNCONFIRMED, WORDS, many, pattern, phrase, text,
+    CLAUSE, FOR_EACH, NOTE, OPTIONAL, SOURCE, UNCONFIRMED, WORDS, many, pattern, phrase, text,
 };
 use super::{Key, Kind};
 
@@ -112,9 +112,10 @@ pub const KINDS: &[Kind] = &[
             FOR_EACH,
             phrase(
                 "default",
-                "The default value: a number with its unit, or one of the choices. `not stated`: the number has no value unless it is set, and without it the verdict is not assessable; its range says what it is.",
+                "The default value: a number with its unit, or one of the choices.",
                 "20 Hz",
             ),
+            OPTIONAL,
             phrase("one of", "The possible words of a choice.", "oriented, signed, magnitudes"),
             phrase("range", "The smallest and the largest allowed value.", "10 Hz to 40 Hz"),
             phrase(
@@ -149,7 +150,11 @@ pub const KINDS: &[Kind] = &[
         &[
             FOR_EACH,
             phrase("in", "The unit of a number.", "kN"),
-            phrase("one of", "The possible words of a choice.", "passenger, locomotive, freight"),
+            phrase(
+                "one of",
+                "The possible words of a choice; `any word` where the protocol does not list them.",
+                "passenger, locomotive, freight",
+            ),
             phrase(
                 "key",
                 "The key in the vehicle file, if it differs from the name.",
@@ -162,9 +167,10 @@ pub const KINDS: &[Kind] = &[
             ),
             phrase(
                 "default",
-                "The value if the file has none. Without a default, the file must have it. `not stated`: it may be missing and then has no value.",
-                "not stated",
+                "The value if the file has none. Without a default, the file must have it.",
+                "40 t",
             ),
+            OPTIONAL,
             NOTE,
         ],
     ),
@@ -177,7 +183,7 @@ pub const KINDS: &[Kind] = &[
             phrase("in", "The unit of a number.", "m"),
             phrase(
                 "one of",
-                "The possible words of a choice; `zones` stands for the names of all zones.",
+                "The possible words of a choice; `zones` stands for the names of all zones, `any word` for words that the protocol does not list.",
                 "right, left, straight",
             ),
             text(
@@ -190,6 +196,7 @@ pub const KINDS: &[Kind] = &[
                 "The value of an empty cell. Without a default, an empty cell is a missing value.",
                 "0 mm",
             ),
+            OPTIONAL,
             phrase(
                 "found",
                 "The value of a section that is found in a run: an expression of values of its signals and of other section data.",
@@ -233,6 +240,7 @@ pub const KINDS: &[Kind] = &[
                 "The kind of record that contains it, if not simulation and measurement: `track`.",
                 "track",
             ),
+            OPTIONAL,
             NOTE,
         ],
     ),

@@ -25,7 +25,7 @@ channel Y "Guiding force"
 
 section radius "Curve radius"
   in       m
-  default  not stated
+  optional  later
 
 section cant "Cant"
   in  mm

@@ -15,8 +15,8 @@ place wheelset
   members  1, 2, 3, 4
 
 vehicle admissible_speed "Admissible speed"
-  in       km/h
-  default  not stated
+  in        km/h
+  optional  not assessable
 
 section zone "Zone"
   one of  zones
@@ -40,6 +40,6 @@ quantity measured_alone "The measured value"
   of             Y at wheelsets some_wheelsets
   value          median
   difference     measured
-  where          direction is not straight
-  minimum pairs  1
   limit          each 60 kN for each zone
+  minimum pairs  1
+  where          direction is not straight
