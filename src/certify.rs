@@ -118,6 +118,7 @@ pub fn certification(compiled: &Compiled, about: &About, outcome: Outcome) -> Ce
         verdict_text: Kind::of(&judged.quantities).verdict_words(judged.verdict).into(),
         verdict: judged.verdict,
         own_word: judged.own_word,
+        outcome: judged.outcome,
         verdict_note: campaign.origin.as_ref().and_then(OriginInfo::note),
         removed: Removed::of(&outcome.sections, &campaign.outside_table),
         campaign,

@@ -188,6 +188,20 @@ pub const REDUCERS: &[ReducerEntry] = &[
     },
 ];
 
+/// `share where Q < 10 kN`, of a signal that is 1 where the condition holds and else 0.
+pub static SHARE_OF_SAMPLES: ReducerEntry =
+    share!("share where", "Share of the samples that satisfy a condition.", |x: &Traits<'_>| {
+        statistics::mean(x)
+    });
+
+/// `longest run where Q < 10 kN`: from the first to the last sample of the longest run.
+pub static LONGEST_RUN: ReducerEntry = ReducerEntry {
+    name: "longest run where",
+    about: "Longest stretch of samples one after the other that satisfy a condition.",
+    gives: |_, axis| axis,
+    run: |axis, x| sampling::longest_run(axis, x),
+};
+
 impl Reducer {
     pub fn named(name: &str) -> Option<Self> {
         REDUCERS.iter().find(|entry| entry.name == name).map(Self::Named)

@@ -23,10 +23,7 @@ impl Checker<'_> {
         let arms = arms.iter().map(|(value, condition)| (value, Some(condition)));
         for (value, condition) in arms.chain(always) {
             let before = scope.asked();
-            let condition = condition.map(|condition| match scope.samples {
-                true => self.condition(condition, &mut Scope::section()),
-                false => self.condition(condition, scope),
-            });
+            let condition = condition.map(|condition| self.condition(condition, scope));
             // The case of a condition that parameters or the zone make false is still checked, but
             // needs no records and no values.
             let value = self.expr(value, scope);
@@ -52,7 +49,8 @@ impl Checker<'_> {
         for other in rest {
             self.alike(first, other)?;
         }
-        if last.is_none() && !found.is_empty() {
+        let of_samples = |(_, on): &(Expr, Expr)| matches!(on.ty, Type::SampleFlags { .. });
+        if last.is_none() && !found.is_empty() && !found.iter().any(of_samples) {
             self.covered(found.iter().map(|(_, condition)| condition), span);
         }
         self.select(found, last, span, scope.zone.as_deref())
@@ -79,6 +77,8 @@ impl Checker<'_> {
         let all: Vec<&Expr> = arms.iter().map(|(value, _)| value).chain(&otherwise).collect();
         let ty = match &all[0].ty {
             Type::Number(dimension) | Type::Samples { dimension, .. } => {
+                let conditions = arms.iter().map(|(_, condition)| condition);
+                let all: Vec<&Expr> = all.iter().copied().chain(conditions).collect();
                 self.of_one_record(*dimension, &all)?
             }
             ty => ty.clone(),
@@ -107,8 +107,10 @@ impl Checker<'_> {
     fn alike(&mut self, first: &Expr, other: &Expr) -> Option<()> {
         let same = match (&first.ty, &other.ty) {
             (Type::Word(_), Type::Word(_)) | (Type::Flag, Type::Flag) => true,
-            (Type::Word(_) | Type::Flag, _) | (_, Type::Word(_) | Type::Flag) => false,
-            _ => first.dimension() == other.dimension(),
+            (Type::Number(_) | Type::Samples { .. }, Type::Number(_) | Type::Samples { .. }) => {
+                first.dimension() == other.dimension()
+            }
+            _ => false,
         };
         if same {
             return Some(());

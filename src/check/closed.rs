@@ -40,7 +40,8 @@ impl Checker<'_> {
         let places: Vec<String> = names.places.keys().cloned().collect();
         for (name, define) in &names.defines {
             let meaning = self.stands_for(define, &mut BTreeSet::new());
-            if self.used_defines.contains(name) || meaning == Meaning::Open {
+            let checked = self.used_defines.contains(name) || names.arguments.contains_key(name);
+            if checked || meaning == Meaning::Open {
                 continue;
             }
             let at = self.first_position(&places);
@@ -60,7 +61,7 @@ impl Checker<'_> {
 
     /// How a definition can be checked without the place where it is used.
     fn stands_for(&self, phrase: &Phrase, seen: &mut BTreeSet<String>) -> Meaning {
-        let mut of = |phrase: &Phrase| self.stands_for(phrase, seen);
+        let of = |phrase: &Phrase| self.stands_for(phrase, seen);
         match &phrase.node {
             Node::Number(_) | Node::Quoted(_) => Meaning::Closed,
             // Values of a signal, of one side or of other limits have no meaning before they are
@@ -89,35 +90,19 @@ impl Checker<'_> {
                 _ => Meaning::Closed,
             },
             Node::PlaceOf(..) | Node::Through(..) => Meaning::Signal,
-            Node::Binary(_, left, right) => of(left).with(of(right)),
-            Node::Near { value, target, tolerance, .. } => {
-                of(value).with(of(target)).with(of(tolerance))
-            }
-            Node::Negative(inner)
-            | Node::Not(inner)
-            | Node::Magnitude(inner)
-            | Node::Power(inner, _)
-            | Node::Table { of: inner, .. } => of(inner),
             Node::Call(name, _) if matches!(name.node.as_str(), "simulated" | "measured") => {
                 Meaning::Open
             }
-            Node::Call(name, _) if MetricEntry::called(&name.node).is_some() => Meaning::Open,
+            Node::Call(name, _)
+                if MetricEntry::called(&name.node).is_some()
+                    || self.names.arguments.contains_key(&name.node) =>
+            {
+                Meaning::Open
+            }
             Node::Call(name, arguments) if is_signal_function(&name.node) => {
                 Meaning::Signal.with(arguments.first().map_or(Meaning::Closed, of))
             }
-            Node::Call(_, arguments) => {
-                arguments.iter().map(&mut of).fold(Meaning::Closed, Meaning::with)
-            }
-            Node::Cases(arms, otherwise) => {
-                let mut all = Meaning::Closed;
-                for (value, condition) in arms {
-                    all = all.with(of(value));
-                    if of(condition) == Meaning::Open {
-                        all = Meaning::Open;
-                    }
-                }
-                otherwise.as_deref().map_or(all, |value| all.with(of(value)))
-            }
+            _ => phrase.parts().into_iter().map(of).fold(Meaning::Closed, Meaning::with),
         }
     }
 }

@@ -7,12 +7,13 @@ use super::prelude::*;
 use super::records::Compare;
 use super::steps::after;
 use crate::catalog::{Best, DIFFERENCES};
-use crate::source::Source;
 
 /// The result of checking value and difference, or the metric, of a quantity.
 pub struct Compared {
     pub evaluation: Evaluation,
     pub dimension: Dimension,
+    /// Dimension of the two compared values, where there are any.
+    pub sides: Option<Dimension>,
     pub processing: String,
     pub comparison: String,
     /// Best value and the text that decides it, where it is known.
@@ -110,6 +111,7 @@ impl Checker<'_> {
             return Some(Compared {
                 evaluation: Evaluation::Values { values, records: Records::Of(of) },
                 dimension: result,
+                sides: None,
                 processing,
                 comparison,
                 best: None,
@@ -143,7 +145,8 @@ impl Checker<'_> {
             }
         };
         let evaluation = Evaluation::Values { values, records };
-        Some(Compared { evaluation, dimension: compared, processing, comparison, best, from })
+        let (dimension, sides) = (compared, Some(result));
+        Some(Compared { evaluation, dimension, sides, processing, comparison, best, from })
     }
 
     /// An expression of values taken from the own signal and from named signals, at every position.
@@ -195,11 +198,8 @@ impl Checker<'_> {
         let mut phrase = from_pest::expression(&field.value, self.problems)?;
         if let Some(word) = bare_word(&phrase) {
             let choice = self.choice_word(word, &phrase.place())?;
-            if let Some((name, expression)) = DIFFERENCES.iter().find(|(name, _)| *name == choice) {
-                let source = Source::new(format!("difference `{name}`"), *expression);
-                let text =
-                    Text { text: (*expression).to_string(), span: source.whole(), exact: true };
-                phrase = from_pest::expression(&text, self.problems)?;
+            if DIFFERENCES.iter().any(|(name, _)| *name == choice) {
+                phrase.node = Node::Path(choice);
             } else if choice != word
                 || !(matches!(word, "simulated" | "measured")
                     || self.names.defines.contains_key(word)

@@ -3,6 +3,7 @@
 
 use super::prelude::*;
 use crate::catalog::{STATISTICS, Statistic};
+use crate::syntax::phrase::Counted;
 
 /// Name of the number of independent units of a group.
 const COUNT: &str = "n";
@@ -180,9 +181,7 @@ impl Checker<'_> {
         if let Some(written) = self.names.estimates.get(path).cloned() {
             self.used_defines.insert(format!("estimate {path}"));
             self.unconfirmed |= self.values.open(path);
-            let found =
-                self.inside("estimate", path, span, |checker| checker.expr(&written, scope));
-            return Some(found);
+            return Some(self.estimate_named(path, &written, span, scope));
         }
         let dimension = scope.values()?;
         if path == COUNT && !self.names.parameter_blocks.contains_key(path) {
@@ -192,6 +191,28 @@ impl Checker<'_> {
         Some(self.not_each(statistic, "group", span).and_then(|statistic| {
             scope.take(Taking::Statistic(statistic, self.ddof), dimension, span)
         }))
+    }
+
+    /// What an estimate stands for. In a bound, its statistics are those of the values.
+    fn estimate_named(
+        &mut self,
+        name: &str,
+        written: &Phrase,
+        span: &Origin,
+        scope: &mut Scope,
+    ) -> Option<Expr> {
+        let own = scope.own_values;
+        let limits = scope.limits.take();
+        let before = scope.values();
+        if let Some(group) = &mut scope.group {
+            group.values = group.values.or(own);
+        }
+        let found = self.inside("estimate", name, span, |checker| checker.expr(written, scope));
+        scope.limits = limits;
+        if let Some(group) = &mut scope.group {
+            group.values = before;
+        }
+        found
     }
 
     /// A percentile of the values of a group, such as `p95`.
@@ -239,9 +260,14 @@ impl Checker<'_> {
                 return self.no_weight(&what, span);
             }
         };
-        let of = self.expr(of, &mut scope.of_section())?;
+        let of_rows = scope.values().is_some() && self.names_value(of);
+        let mut names = match of_rows {
+            true => scope.of_row(scope.values(), self.grouped.sides),
+            false => scope.of_section(),
+        };
+        let of = self.expr(of, &mut names)?;
         let dimension = self.number_type(&of)?;
-        scope.take(Taking::Data { reducer: found, of, by }, dimension, span)
+        scope.take(Taking::Data { reducer: found, of, of_rows, by }, dimension, span)
     }
 
     /// A statistic, or `total`.
@@ -340,10 +366,10 @@ impl Checker<'_> {
         Some(Expr::number(Kind::Input(scope.others.len()), dimension, span))
     }
 
-    /// A share of the values: `share where value <= 1`.
+    /// A share of the values, or their number: `share where value <= 1`.
     pub fn group_share(
         &mut self,
-        of_sections: bool,
+        (counted, of_sections): (Counted, bool),
         condition: &Phrase,
         by: Option<&Phrase>,
         span: &Origin,
@@ -357,10 +383,22 @@ impl Checker<'_> {
         if value.is_none() && !of_sections {
             return self.no_values(span);
         }
-        let mut of_row = Scope { value, ..scope.of_section() };
+        let sides = self.grouped.sides.filter(|_| !of_sections);
+        let mut of_row = scope.of_row(value, sides);
         let condition = self.condition(condition, &mut of_row)?;
         let by = if_written(by.map(|by| self.weight(by, scope)))?;
-        let taking = Taking::Share { condition, of_sections, others: of_row.others, by };
+        let share = match (counted, &by) {
+            (Counted::Share, _) => true,
+            (Counted::Count, None) => false,
+            (Counted::Count, Some(_)) => return self.no_weight("a number of values", span),
+            (Counted::LongestRun { .. }, _) => {
+                let says = "a longest run is one of samples, and these are values of sections";
+                let help = "it stands in the `value` of a quantity: `longest run where Q < 10 kN`";
+                return self.refuse(error("run-of-values", says, span).help(help));
+            }
+        };
+        let others = of_row.others;
+        let taking = Taking::Where { share, condition, of_sections, others, by };
         scope.take(taking, Dimension::ONE, span)
     }
 

@@ -22,7 +22,7 @@ impl Type {
         match self {
             Self::Number(dimension) | Self::Samples { dimension, .. } => dimension.in_words(),
             Self::Word(_) => "a word".into(),
-            Self::Flag => "a condition".into(),
+            Self::Flag | Self::SampleFlags { .. } => "a condition".into(),
         }
     }
 }
@@ -32,7 +32,12 @@ impl Checker<'_> {
     pub fn expr(&mut self, phrase: &Phrase, scope: &mut Scope) -> Option<Expr> {
         let origin = origin(phrase);
         let span = origin.span.clone();
-        self.deeper(&span, |checker| checker.expr_inside(phrase, origin, scope))
+        let may_miss = std::mem::take(&mut scope.may_miss);
+        let found = self.deeper(&span, |checker| checker.expr_inside(phrase, origin, scope))?;
+        if found.may_miss_samples() && !may_miss {
+            return self.missing_samples(&found);
+        }
+        Some(found)
     }
 
     /// An expression that is a condition.
@@ -44,9 +49,11 @@ impl Checker<'_> {
 
     fn expr_inside(&mut self, phrase: &Phrase, span: Origin, scope: &mut Scope) -> Option<Expr> {
         let (kind, ty) = match &phrase.node {
-            node if scope.samples && !computed_from_samples(node) => {
-                let number = self.expr(phrase, &mut Scope::section())?;
-                self.number_type(&number)?;
+            node if scope.samples && !self.of_samples(phrase, scope) => {
+                let number = self.expr(phrase, &mut scope.of_section())?;
+                if !matches!(node, Node::Binary(..) | Node::Not(_) | Node::Near { .. }) {
+                    self.number_type(&number)?;
+                }
                 return Some(number);
             }
             Node::Number(Number { value, .. }) if !value.is_finite() => {
@@ -86,7 +93,12 @@ impl Checker<'_> {
                 let ty = inner.ty.clone();
                 (Kind::Negative(Box::new(inner)), ty)
             }
-            Node::Not(inner) => (Kind::Not(Box::new(self.condition(inner, scope)?)), Type::Flag),
+            Node::Not(inner) => {
+                let inner = self.expr(inner, scope)?;
+                self.flag_type(&inner)?;
+                let ty = inner.ty.clone();
+                (Kind::Not(Box::new(inner)), ty)
+            }
             Node::Magnitude(inner) => {
                 let inner = self.expr(inner, scope)?;
                 self.number_type(&inner)?;
@@ -112,6 +124,9 @@ impl Checker<'_> {
             }
             Node::Binary(operator, left, right) => {
                 let inputs = scope.inputs.len();
+                if *operator == Operator::Add && scope.samples {
+                    self.sign_as_condition(left, right, &span);
+                }
                 let found = self.binary(*operator, left, right, span, scope)?;
                 if matches!(found.kind, Kind::Constant(_)) {
                     // `false and p0.15 > p99.85` does not need the records.
@@ -133,6 +148,9 @@ impl Checker<'_> {
             }
             Node::Call(name, arguments) if self.metric_called(name, scope) => {
                 return self.metric_call(name, arguments, &span, scope);
+            }
+            Node::Call(name, arguments) if self.names.arguments.contains_key(&name.node) => {
+                return self.defined_of(name, arguments, &span, scope);
             }
             Node::Call(name, arguments) => {
                 let function = self.function(name, arguments.len())?;
@@ -169,8 +187,14 @@ impl Checker<'_> {
             Node::Bound { upper, confidence, of, bootstrap } => {
                 return self.group_bound((*upper, confidence, *bootstrap), of, &span, scope);
             }
-            Node::Share { of_sections, condition } => {
-                return self.group_share(*of_sections, condition, None, &span, scope);
+            Node::Share { counted, of_sections: false, condition }
+                if scope.group.is_none() && scope.reduce.is_some() =>
+            {
+                return self.share_of_samples(*counted, condition, &span, scope);
+            }
+            Node::Share { counted, of_sections, condition } => {
+                let of = (*counted, *of_sections);
+                return self.group_share(of, condition, None, &span, scope);
             }
             Node::Fit(fit) => return self.group_fit(fit, &span, scope),
             Node::Reduced(reducer, signal) => {
@@ -180,8 +204,8 @@ impl Checker<'_> {
             Node::PlaceOf(name, words) if scope.samples => {
                 return self.placed(name, words, &span, scope);
             }
-            Node::Through(inner, filter) if scope.samples => {
-                return self.filtered(inner, filter, span, scope);
+            Node::Through(inner, steps) if scope.samples => {
+                return self.filtered(inner, steps, span, scope);
             }
             Node::PlaceOf(name, _) => return self.not_a_number(&name.node, &span),
             Node::Through(inner, _) => return self.not_a_number(&inner.words(), &span),
@@ -252,7 +276,7 @@ impl Checker<'_> {
     ) -> Option<Type> {
         if matches!(operator, Operator::And | Operator::Or) {
             let (a, b) = (self.flag_type(left), self.flag_type(right));
-            return (a.is_some() && b.is_some()).then_some(Type::Flag);
+            return a.and(b).and_then(|()| self.condition_type(left, right));
         }
         let (a, b) = (self.number_type(left), self.number_type(right));
         let (a, b) = (a?, b?);
@@ -269,7 +293,7 @@ impl Checker<'_> {
                 return self.mismatch("subtracted", left, right);
             }
             Operator::Add | Operator::Subtract => return self.mismatch("added", left, right),
-            _ if a == b => return Some(Type::Flag),
+            _ if a == b => return self.condition_type(left, right),
             _ => return self.mismatch("compared", left, right),
         };
         self.of_one_record(dimension, &[left, right])
@@ -278,11 +302,28 @@ impl Checker<'_> {
     /// The type of what is computed from these parts, sample by sample if any has samples. Track and
     /// vehicle records have different samples and cannot be combined.
     pub fn of_one_record(&mut self, dimension: Dimension, parts: &[&Expr]) -> Option<Type> {
-        let mut sampled = parts.iter().filter(|part| matches!(part.ty, Type::Samples { .. }));
-        let Some(first) = sampled.next() else { return Some(Type::Number(dimension)) };
+        match self.record_of(parts)? {
+            None => Some(Type::Number(dimension)),
+            Some(track) => Some(Type::Samples { dimension, track }),
+        }
+    }
+
+    /// The type of a condition on two parts: for each sample if one of them has samples.
+    fn condition_type(&mut self, left: &Expr, right: &Expr) -> Option<Type> {
+        let track = self.record_of(&[left, right])?;
+        Some(track.map_or(Type::Flag, |track| Type::SampleFlags { track }))
+    }
+
+    /// Whether the samples of these parts are those of the track record; `Some(None)` where no part
+    /// has samples.
+    pub fn record_of(&mut self, parts: &[&Expr]) -> Option<Option<bool>> {
+        let of_samples =
+            |part: &&&Expr| matches!(part.ty, Type::Samples { .. } | Type::SampleFlags { .. });
+        let mut sampled = parts.iter().filter(of_samples);
+        let Some(first) = sampled.next() else { return Some(None) };
         let track = first.track();
         match sampled.find(|other| other.track() != track) {
-            None => Some(Type::Samples { dimension, track }),
+            None => Some(Some(track)),
             Some(other) => self.refuse(
                 error(
                     "mixed-records",
@@ -348,7 +389,7 @@ impl Checker<'_> {
 
     /// Whether it is a condition; a problem if not.
     pub fn flag_type(&mut self, expr: &Expr) -> Option<()> {
-        if expr.ty == Type::Flag {
+        if matches!(expr.ty, Type::Flag | Type::SampleFlags { .. }) {
             return Some(());
         }
         self.refuse(
@@ -370,7 +411,11 @@ impl Checker<'_> {
             } else if is_signal_function(&name.node) {
                 problem.help(format!("it gives a signal, expected a number: `rms of {}(...)`", name.node))
             } else {
-                problem.suggest(&name.node, FUNCTIONS.iter().map(|function| function.name).chain(SIGNAL_FUNCTIONS.map(|(name, ..)| name)))
+                let own = self.names.arguments.keys().map(String::as_str);
+                let known = FUNCTIONS.iter().map(|function| function.name);
+                let known: Vec<&str> =
+                    known.chain(SIGNAL_FUNCTIONS.map(|(name, ..)| name)).chain(own).collect();
+                problem.suggest(&name.node, known)
             });
         };
         let needed = if found.signature == Signature::PairSame { 2 } else { 1 };
@@ -435,28 +480,6 @@ fn of_percentile(node: &Node) -> bool {
 /// The place and the words of a whole field.
 pub fn whole(text: &Text) -> Origin {
     Origin { span: text.span.clone(), words: normalised(&text.text).into() }
-}
-
-/// Whether a node over samples is computed sample by sample; all others are numbers that are
-/// constant along the record.
-fn computed_from_samples(node: &Node) -> bool {
-    match node {
-        Node::Binary(operator, ..) => matches!(
-            operator,
-            Operator::Add | Operator::Subtract | Operator::Multiply | Operator::Divide
-        ),
-        Node::Path(_)
-        | Node::PlaceOf(..)
-        | Node::Negative(_)
-        | Node::Magnitude(_)
-        | Node::Power(..)
-        | Node::Table { .. }
-        | Node::Call(..)
-        | Node::Through(..)
-        | Node::Reduced(..)
-        | Node::Cases(..) => true,
-        _ => false,
-    }
 }
 
 /// The place and the words of a phrase.

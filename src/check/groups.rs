@@ -15,20 +15,23 @@ pub struct Grouped {
     what: String,
     /// The places of the signals; `None` of sections, which have no place and no record.
     places: Option<Vec<String>>,
+    /// Dimension of the compared values, where there are any.
+    pub sides: Option<Dimension>,
 }
 
 impl Grouped {
     /// The values of a quantity.
-    pub fn values(quantity: &Block, places: &[String]) -> Self {
+    pub fn values(quantity: &Block, places: &[String], sides: Option<Dimension>) -> Self {
         Self {
             what: format!("the values of `{}`", quantity.name_text()),
             places: Some(places.to_vec()),
+            sides,
         }
     }
 
     /// The sections used.
     pub fn sections() -> Self {
-        Self { what: "the sections".into(), places: None }
+        Self { what: "the sections".into(), ..Self::default() }
     }
 }
 
@@ -107,7 +110,7 @@ impl Checker<'_> {
     /// column of words.
     fn key(&mut self, key: &At<String>) -> Option<Key> {
         let name = key.node.as_str();
-        let Grouped { what, places } = self.grouped.clone();
+        let Grouped { what, places, .. } = self.grouped.clone();
         match name {
             "section" => return Some(Key::Section),
             "site" => return Some(Key::Site),

@@ -65,8 +65,12 @@ impl Checker<'_> {
 
     /// The estimate of a whole quantity with a bound from the same values: the two grow together.
     pub fn of_own_values(&mut self, estimate: &Estimate, bound: &OfGroup, block: &Block) {
-        let own =
-            |taking: &Taking| matches!(taking, Taking::Other { id, .. } if id == block.name_text());
+        let own = |taking: &Taking| match taking {
+            Taking::Other { id, .. } => id == block.name_text(),
+            Taking::Data { of_rows, .. } => *of_rows,
+            Taking::Statistic(..) | Taking::Weighted { .. } => true,
+            _ => false,
+        };
         if matches!(estimate.kind, EstimateKind::Each) || !bound.taken.iter().any(own) {
             return;
         }
@@ -129,7 +133,7 @@ impl Values for Pair {
 fn is_share(estimate: &Estimate) -> bool {
     let EstimateKind::Of(of) = &estimate.kind else { return false };
     match (&of.expr.kind, &of.taken[..]) {
-        (Kind::Input(0), [Taking::Share { .. }]) => true,
+        (Kind::Input(0), [Taking::Where { share, .. }]) => *share,
         (Kind::Input(0), [Taking::Bound { of, .. }]) => is_share(of),
         _ => false,
     }

@@ -39,7 +39,7 @@ impl Checker<'_> {
         block: &Block,
         unit: Option<(&Unit, &Span)>,
         best: Option<&(Best, Span)>,
-        places: &[String],
+        grouped: Grouped,
     ) -> Option<Vec<Limit>> {
         let fields: Vec<&Field> = block.fields_named("limit").collect();
         // First pass, without messages: the names that other limits can refer to.
@@ -50,7 +50,7 @@ impl Checker<'_> {
             }
         }
         let common = Common { block, unit, best, names };
-        self.grouped = Grouped::values(block, places);
+        self.grouped = grouped;
         let found: Vec<Option<Vec<Limit>>> =
             fields.iter().map(|field| self.limit(&field.value, &common)).collect();
         let ok = found.iter().all(Option::is_some);
@@ -102,10 +102,14 @@ impl Checker<'_> {
             section: matches!(estimate.kind, EstimateKind::Each),
             ..Scope::zone(zone.as_deref())
         };
+        let values = common.unit.map(|(unit, _)| unit.dimension);
         let mut of_bound = scope();
         of_bound.limits = Some((dimension.unwrap_or(Dimension::ONE), others.clone()));
+        of_bound.own_values = values;
         let bound = if of_bound.section {
-            self.expr(&written.bound, &mut of_bound).map(|expr| OfGroup { expr, taken: Vec::new() })
+            (of_bound.value, of_bound.pair) = (values, self.grouped.sides);
+            let expr = self.expr(&written.bound, &mut of_bound);
+            expr.map(|expr| OfGroup { expr, taken: of_bound.others })
         } else {
             self.of_group(&written.bound, None, &of_bound)
         };

@@ -1,8 +1,6 @@
 //! Checks the `metric` of a quantity: a wording of the registry, or an expression of metrics and of
 //! the signals of both sides.
 
-use std::collections::BTreeSet;
-
 use super::compared::Compared;
 use super::evaluate::is_whole;
 use super::expressions::whole;
@@ -112,6 +110,7 @@ impl Checker<'_> {
                 after(chain, first.signal.dimension()),
                 self.axis_dimension(),
             ),
+            sides: None,
             processing: words.clone(),
             comparison: words,
             best: Some((metric.0.best, field.value.span.clone())),
@@ -179,6 +178,7 @@ impl Checker<'_> {
         Some(Compared {
             evaluation: Evaluation::Combined { of: valued, pairing: Pairing::SIDES },
             dimension,
+            sides: None,
             processing: words.clone(),
             comparison: words,
             best: None,
@@ -244,7 +244,7 @@ impl Checker<'_> {
         }
         let mut asked = Asked { points: points.map(|points| points as usize), band: None };
         if let [(low, of_low, at_low), (high, of_high, at_high)] = filled.numbers.as_slice() {
-            let in_time = self.has_time
+            let in_time = self.time.is_some()
                 || self.axis.as_ref().is_some_and(|axis| axis.unit.dimension == Dimension::TIME);
             let wanted = if in_time { Dimension::FREQUENCY } else { Dimension::PER_LENGTH };
             for (found, at) in [(of_low, at_low), (of_high, at_high)] {
@@ -403,32 +403,6 @@ impl Checker<'_> {
         self.signal(over, at)
     }
 
-    /// Whether an expression uses the samples of a side: `simulated - measured`.
-    pub fn names_side(&self, phrase: &Phrase, seen: &mut BTreeSet<String>) -> bool {
-        let mut any = |phrase: &Phrase| self.names_side(phrase, seen);
-        match &phrase.node {
-            Node::Path(path) if matches!(path.as_str(), "simulated" | "measured") => {
-                !self.is_signal(path)
-            }
-            Node::Path(path) => match self.names.defines.get(path) {
-                Some(define) if seen.insert(path.clone()) => self.names_side(&define.clone(), seen),
-                _ => false,
-            },
-            Node::Binary(_, left, right) | Node::Over(left, right) => any(left) || any(right),
-            Node::Reduced(_, inner)
-            | Node::Negative(inner)
-            | Node::Magnitude(inner)
-            | Node::Power(inner, _)
-            | Node::Table { of: inner, .. }
-            | Node::Through(inner, _) => any(inner),
-            Node::Call(_, arguments) => arguments.iter().any(any),
-            Node::Cases(arms, otherwise) => {
-                arms.iter().any(|(value, _)| any(value)) || otherwise.as_deref().is_some_and(any)
-            }
-            _ => false,
-        }
-    }
-
     /// A value taken from the samples of both sides: `rms of (simulated - measured)`.
     pub fn of_both(
         &mut self,
@@ -444,14 +418,23 @@ impl Checker<'_> {
                     .help("remove the outer `measured(...)` or `simulated(...)`"),
             );
         }
-        let mut samples = Scope::samples(&scope.at, own.filter(|_| metrics));
+        let own = own.filter(|_| metrics);
+        let mut samples = Scope { may_miss: true, ..Scope::samples(&scope.at, own) };
         let signal = self.expr(signal, &mut samples)?;
-        if let Some(other) = not_of_both(&signal) {
-            return self.refuse(error("mixed-records", "samples of both sides can only be combined with numbers: other signals and filters have other samples", other).help("write filters in the field `filter`; `shifted` can only be applied to `simulated` and `measured`"));
-        }
+        self.only_both(&signal)?;
         let dimension = reducer.gives(signal.dimension(), axis);
         let own = Input::own(Taken::OfBoth(reducer), InputSide::Own, span);
         Some(scope.input(Input { signal: Some(signal), ..own }, dimension, span))
+    }
+}
+
+impl Checker<'_> {
+    /// Refuses other signals among the samples of both sides.
+    pub fn only_both(&mut self, signal: &Expr) -> Option<()> {
+        let Some(other) = not_of_both(signal) else { return Some(()) };
+        let says = "samples of both sides can only be combined with numbers: other signals and filters have other samples";
+        let help = "write filters in the field `filter`; `shifted` can only be applied to `simulated` and `measured`";
+        self.refuse(error("mixed-records", says, other).help(help))
     }
 }
 
@@ -476,7 +459,7 @@ fn not_of_both(expr: &Expr) -> Option<&Expr> {
         Kind::OverAxis(AxisOperation::Shifted(_), inner) => {
             Some(expr).filter(|_| !matches!(inner.kind, Kind::Side(_)))
         }
-        Kind::Channel { .. } | Kind::Filtered(..) | Kind::Cases(..) => Some(expr),
+        Kind::Channel { .. } | Kind::Filtered(..) => Some(expr),
         _ => expr.parts().into_iter().find_map(not_of_both),
     }
 }

@@ -52,7 +52,7 @@ impl Checker<'_> {
         block: &Block,
         places: &[String],
     ) -> Option<Vec<MinimumOfGroups>> {
-        self.grouped = Grouped::values(block, places);
+        self.grouped = Grouped::values(block, places, None);
         let mut all = Vec::new();
         let mut ok = true;
         for field in fields {

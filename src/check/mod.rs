@@ -28,6 +28,7 @@ mod metrics;
 mod minima;
 mod names;
 mod near;
+mod outcomes;
 mod overlap;
 mod overlay;
 mod parameters;
@@ -42,6 +43,7 @@ mod records;
 mod reports;
 mod resolve;
 mod rules;
+mod samples;
 mod scope;
 mod signals;
 mod slips;
@@ -143,8 +145,8 @@ struct Checker<'a> {
     /// Whether what was looked at since this was last put to false has a number that is not
     /// confirmed.
     unconfirmed: bool,
-    /// Whether records have a time.
-    has_time: bool,
+    /// The time of the records, where they have one.
+    time: Option<Axis>,
     /// The present expression is one of several values; each applies only in its own cases.
     partial: bool,
     /// Names of campaigns that conditions ask for.
@@ -209,7 +211,7 @@ pub fn check(
         in_quantity: false,
         values: confirm::values(&document.blocks, overrides),
         unconfirmed: false,
-        has_time: false,
+        time: None,
         partial: false,
         campaigns: Vec::new(),
         depth: 0,
@@ -372,7 +374,7 @@ impl Checker<'_> {
             .required(head, "axis")
             .and_then(|field| self.axis_field(field, &[Dimension::LENGTH, Dimension::TIME]));
         let time = head.field("time").and_then(|field| self.axis_field(field, &[Dimension::TIME]));
-        self.has_time = time.is_some();
+        self.time = time.clone();
         self.gather_names();
         self.unknown_overrides(head);
         let mut sections = self.section_rules(of("sections").next());

@@ -59,6 +59,8 @@ pub struct Names {
     /// Channels, then the signals that are computed from them.
     pub signals: IndexMap<String, Signal>,
     pub defines: IndexMap<String, Phrase>,
+    /// Names of the arguments of those definitions that have some.
+    pub arguments: IndexMap<String, Vec<String>>,
     pub estimates: IndexMap<String, Phrase>,
     /// Blocks of the filters.
     pub filters: IndexMap<String, Block>,
@@ -121,12 +123,35 @@ impl Checker<'_> {
     /// A definition or an estimate.
     fn expression_named(&mut self, kind: &str, name: &str, block: &Block) -> Option<()> {
         let is = self.required(block, "is").and_then(|field| self.written(field))?;
+        if let Some(field) = block.field("of") {
+            let arguments = self.argument_names(field)?;
+            self.names.arguments.insert(name.to_string(), arguments);
+        }
         let known = match kind {
             "define" => &mut self.names.defines,
             _ => &mut self.names.estimates,
         };
         known.insert(name.to_string(), is);
         Some(())
+    }
+
+    /// The names of the arguments of a definition, each once.
+    fn argument_names(&mut self, field: &Field) -> Option<Vec<String>> {
+        let written = from_pest::list(&field.value, self.problems)?;
+        let mut names: Vec<String> = Vec::new();
+        for argument in &written {
+            let name = &argument.node;
+            if names.contains(name) {
+                let says = format!("`{name}` is named twice");
+                return self.refuse(error("duplicate-name", says, argument));
+            }
+            if from_pest::is_word_of_language(name) || Reducer::named(name).is_some() {
+                let says = format!("`{name}` is a word of the language and no name of an argument");
+                return self.refuse(error("reserved-name", says, argument));
+            }
+            names.push(name.clone());
+        }
+        Some(names)
     }
 
     /// Reports a name that an expression could not use or would read as something else.

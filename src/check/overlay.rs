@@ -26,8 +26,11 @@ pub fn overlay(parent: &mut Block, variant: &Block) {
         "in" => says("one of"),
         "one of" => says("in"),
         // A rule and the judgement of a person replace each other, too.
-        "holds" | "of" => says("judged by"),
-        "judged by" => says("holds"),
+        "of" => says("judged by"),
+        "holds" | "validated" => says("judged by") || says("outcome"),
+        "judged by" => says("holds") || says("outcome"),
+        "words" => says("outcome"),
+        "outcome" => says("holds") || says("validated") || says("judged by") || says("words"),
         // And a limit and the reason why there is none.
         "reported" => says("limit"),
         "limit" => says("reported"),

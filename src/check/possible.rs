@@ -42,7 +42,7 @@ impl Possible {
             Type::Number(_) | Type::Samples { .. } => {
                 Self::Number(f64::NEG_INFINITY, f64::INFINITY)
             }
-            Type::Flag => Self::Flag { can_hold: true, can_fail: true },
+            Type::Flag | Type::SampleFlags { .. } => Self::Flag { can_hold: true, can_fail: true },
             Type::Word(words) => Self::Words(Some(words.clone()).filter(|words| !words.is_empty())),
         }
     }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::conditions::impossible;
 use super::evaluate::is_whole;
 use super::expressions::whole;
+use super::groups::Grouped;
 use super::prelude::*;
 use super::steps::after;
 use crate::catalog::NOT_CHECKED;
@@ -89,8 +90,15 @@ impl Checker<'_> {
             .and_then(|compared| compared.from.as_ref())
             .or_else(|| of.as_ref().map(|of| &of.span));
         let best = compared.as_ref().and_then(|compared| compared.best.as_ref());
-        let limits = self.limits(block, unit.as_ref().zip(from), best, &places);
-        let reports = self.reports(block, unit.as_ref().map(|unit| unit.dimension), &places);
+        let sides = compared.as_ref().and_then(|compared| compared.sides);
+        let grouped = Grouped::values(block, &places, sides);
+        let limits = self.limits(block, unit.as_ref().zip(from), best, grouped);
+        let reports = self.reports(block, unit.as_ref().map(|unit| unit.dimension));
+        let outcomes = self.outcomes_of(block, unit.as_ref().map(|unit| unit.dimension));
+        let limits = limits.zip(outcomes.as_ref()).map(|(mut limits, (_, outcome))| {
+            limits.extend(outcome.clone());
+            limits
+        });
         let minima = self.minima(block);
         if let (Some(reported), Some(limit)) = (block.field("reported"), block.field("limit")) {
             self.tell(
@@ -102,7 +110,8 @@ impl Checker<'_> {
                 .also(&limit.key, "the limit"),
             );
         }
-        let meant = block.field("reported").or(block.field("report")).is_some()
+        let fields = ["reported", "report", "outcome"];
+        let meant = fields.iter().any(|key| block.field(key).is_some())
             || self.is_referred_to(block.name_text());
         if block.field("limit").is_none() && !incomplete && !meant {
             self.tell(
@@ -182,6 +191,7 @@ impl Checker<'_> {
             evaluation: Arc::new(compared.evaluation),
             best: compared.best.map(|(best, _)| best.value()),
             only: if_written(only)?,
+            outcomes: outcomes?.0,
             limits: limits?.into_iter().map(Arc::new).collect(),
             reports: reports?.into_iter().map(Arc::new).collect(),
             minimum_signals: minimum_signals?,

@@ -18,15 +18,9 @@ enum Of {
 }
 
 impl Checker<'_> {
-    /// The reports of a quantity. Where its values have an error (no dimension), all else is
+    /// The reports of a quantity, after its limits: of the same groups. Where its values have an error (no dimension), all else is
     /// checked.
-    pub fn reports(
-        &mut self,
-        block: &Block,
-        dimension: Option<Dimension>,
-        places: &[String],
-    ) -> Option<Vec<Report>> {
-        self.grouped = Grouped::values(block, places);
+    pub fn reports(&mut self, block: &Block, dimension: Option<Dimension>) -> Option<Vec<Report>> {
         self.reports_of(block, Of::Values(dimension))
     }
 

@@ -1,12 +1,11 @@
 //! Resolves the names in expressions by scope: parameters, data, definitions, statistics, values of
 //! signals, and signals themselves.
 
-use std::collections::BTreeSet;
-
 use super::prelude::*;
 use super::scope::Reduce;
 use super::steps::after;
-use crate::catalog::{METRICS, MetricEntry, REDUCERS, Reducer, STATISTICS, Statistic};
+use crate::catalog::{DIFFERENCES, METRICS, MetricEntry, REDUCERS, Reducer, STATISTICS, Statistic};
+use crate::source::Source;
 
 /// The meaning of a statistic's name in the bound of a limit, and how to limit an expression of
 /// values instead.
@@ -111,7 +110,7 @@ impl Checker<'_> {
                 found.in_words()
             ));
         };
-        if self.names_side(signal, &mut BTreeSet::new()) {
+        if self.names_side(signal) {
             return self.of_both(found, signal, span, scope);
         }
         // `slope of A over B` is parsed as `slope of (A over B)`.
@@ -120,8 +119,8 @@ impl Checker<'_> {
             _ => (signal, None),
         };
         let (signal, chain) = match &signal.node {
-            Node::Through(inner, filter) if over.is_none() => {
-                let steps = self.filter_named(&filter.node, &filter.place())?;
+            Node::Through(inner, steps) if over.is_none() => {
+                let steps = self.steps_of(steps)?;
                 self.step_order(&steps, false)?;
                 // A filter that stands last before a number is taken may have windows.
                 (inner.as_ref(), steps)
@@ -129,7 +128,9 @@ impl Checker<'_> {
             _ => (signal, Vec::new()),
         };
         let at = &scope.at;
-        let signal = self.signal(signal, at);
+        // A slope takes its two signals sample by sample; a filter needs all samples.
+        let may_miss = over.is_none() && chain.is_empty();
+        let signal = self.expr(signal, &mut Scope { may_miss, ..Scope::samples(at, None) });
         let over = if_written(over.map(|over| self.slope_axis(found, over, reducer, at)))?;
         let signal = signal?;
         let axis = over.as_ref().map_or(axis, Expr::dimension);
@@ -196,8 +197,19 @@ impl Checker<'_> {
                 Type::Word(scope.words.clone()),
             );
         }
+        if let Some(found) = scope.argument(path) {
+            return Some(Expr { span: span.clone(), ..found.clone() });
+        }
         if let (Some(pair), Some(side)) = (scope.pair, Side::named(path)) {
             return number(Kind::Side(side), pair);
+        }
+        if scope.pair.is_some()
+            && let Some((_, expression)) = DIFFERENCES.iter().find(|(name, _)| *name == path)
+        {
+            let source = Source::new(format!("difference `{path}`"), *expression);
+            let text = Text { text: (*expression).to_string(), span: source.whole(), exact: true };
+            let phrase = from_pest::expression(&text, self.problems)?;
+            return self.expr(&phrase, scope);
         }
         if let (Some(dimension), "value") = (scope.value, path) {
             return number(Kind::Input(0), dimension);
@@ -260,13 +272,50 @@ impl Checker<'_> {
 
     /// What a definition stands for.
     fn defined(&mut self, name: &str, span: &Span, scope: &mut Scope) -> Option<Expr> {
+        if let Some(arguments) = self.names.arguments.get(name) {
+            let help = format!("write `{name}({})`", arguments.join(", "));
+            let problem = problem!("arguments", span, "`{name}` needs arguments");
+            return self.refuse(problem.help(help));
+        }
         let define = self.names.defines.get(name)?.clone();
         self.used_defines.insert(name.to_string());
-        self.inside("define", name, span, |checker| checker.expr(&define, scope))
+        let outside = std::mem::take(&mut scope.arguments);
+        let found = self.inside("define", name, span, |checker| checker.expr(&define, scope));
+        scope.arguments = outside;
+        found
+    }
+
+    /// What a definition with arguments stands for: `comfort(ay, 2 m/s^2)`.
+    pub fn defined_of(
+        &mut self,
+        name: &At<String>,
+        given: &[Phrase],
+        span: &Origin,
+        scope: &mut Scope,
+    ) -> Option<Expr> {
+        let names = self.names.arguments.get(&name.node)?.clone();
+        let define = self.names.defines.get(&name.node)?.clone();
+        self.unconfirmed |= self.values.open(&name.node);
+        self.used_defines.insert(name.node.clone());
+        if names.len() != given.len() {
+            let (count, found) = (names.len(), given.len());
+            let says = format!("`{}` has {count} arguments; found {found}", name.node);
+            let help = format!("write `{}({})`", name.node, names.join(", "));
+            return self.refuse(error("arguments", says, name).help(help));
+        }
+        let found = all(given.iter().map(|argument| self.expr(argument, scope)))?;
+        let arguments = names.into_iter().zip(found).collect();
+        let outside = std::mem::replace(&mut scope.arguments, arguments);
+        let found = self.inside("define", &name.node, span, |checker| checker.expr(&define, scope));
+        scope.arguments = outside;
+        Some(Expr { span: span.clone(), ..found? })
     }
 
     /// A name among samples: a side, a channel, a signal, or a number.
     pub fn samples_named(&mut self, name: &str, span: &Origin, scope: &mut Scope) -> Option<Expr> {
+        if let Some(found) = scope.argument(name) {
+            return Some(Expr { span: span.clone(), ..found.clone() });
+        }
         if let Some(side) = Side::named(name).filter(|_| !self.is_signal(name)) {
             return self.side_of_own(side, span, scope);
         }

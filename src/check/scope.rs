@@ -11,6 +11,8 @@ pub struct Scope {
     pub section: bool,
     /// Whether it is an expression over the samples of records.
     pub samples: bool,
+    /// Whether samples may be missing: a number is taken of the others.
+    pub may_miss: bool,
     /// Dimension of the own signal, where `simulated` and `measured` stand for its samples.
     pub own_of_both: Option<Dimension>,
     /// Whether, and from what, values of signals can be taken.
@@ -27,6 +29,10 @@ pub struct Scope {
     pub value: Option<Dimension>,
     /// Statistics of other quantities that can be used beside `value`.
     pub others: Vec<Taking>,
+    /// Dimension of the values that an estimate by its name is of, in a bound.
+    pub own_values: Option<Dimension>,
+    /// Arguments of the functions that are being looked at, by name.
+    pub arguments: Vec<(String, Expr)>,
     /// The position at which named signals are taken.
     pub at: Assignment,
     /// Dimension of the own signal after its filter divided by that before.
@@ -77,14 +83,26 @@ impl Scope {
 
     /// The data of a section, in the same zone as this scope.
     pub fn of_section(&self) -> Self {
-        Self { zone: self.zone.clone(), ..Self::section() }
+        let arguments = self.arguments.clone();
+        Self { zone: self.zone.clone(), arguments, ..Self::section() }
+    }
+
+    /// The data of a section and its value, with those of both sides where it has any.
+    pub fn of_row(&self, value: Option<Dimension>, sides: Option<Dimension>) -> Self {
+        Self { value, pair: sides, ..self.of_section() }
     }
 
     /// The rows of a group, in the same zone as this scope. `values` is the dimension of the values;
     /// `None` where only data of the sections are available.
     pub fn of_group(&self, values: Option<Dimension>) -> Self {
         let group = Some(Group { values, taken: Vec::new() });
-        Self { zone: self.zone.clone(), limits: self.limits.clone(), group, ..Self::vehicle() }
+        Self {
+            zone: self.zone.clone(),
+            limits: self.limits.clone(),
+            own_values: self.own_values,
+            group,
+            ..Self::vehicle()
+        }
     }
 
     /// As [`Self::section`], with values of signals; `own` is the dimension of the own signal.
@@ -111,6 +129,11 @@ impl Scope {
     /// Dimension of the values of a group, where there are any.
     pub fn values(&self) -> Option<Dimension> {
         self.group.as_ref()?.values
+    }
+
+    /// What the argument of a function stands for.
+    pub fn argument(&self, name: &str) -> Option<&Expr> {
+        self.arguments.iter().find(|(known, _)| known == name).map(|(_, found)| found)
     }
 
     /// Asks for a number that is taken from signals.

@@ -4,6 +4,7 @@
 use super::names::Signal;
 use super::prelude::*;
 use super::steps::after;
+use crate::syntax::phrase::Step as WrittenStep;
 
 impl Checker<'_> {
     /// The signal that an expression stands for at the given positions.
@@ -11,22 +12,22 @@ impl Checker<'_> {
         self.expr(phrase, &mut Scope::samples(at, None))
     }
 
-    /// `Y through LP20`.
+    /// `Y through LP20`, `Y through low-pass 10 Hz`.
     pub fn filtered(
         &mut self,
         inner: &Phrase,
-        filter: &At<String>,
+        steps: &[At<WrittenStep>],
         span: Origin,
         scope: &mut Scope,
     ) -> Option<Expr> {
         let inner = self.expr(inner, scope);
-        let steps = self.filter_named(&filter.node, &filter.place());
+        let steps = self.steps_of(steps);
         let (inner, steps) = (inner?, steps?);
         self.step_order(&steps, false)?;
         if let Some(window) = steps.iter().find(|step| !step.kind.keeps_samples()) {
             let says = "a filter inside a signal must keep the samples; this one has a window or resampling";
             return self
-                .refuse(error("window-in-signal", says, filter).also(&window.span, "this step"));
+                .refuse(error("window-in-signal", says, &span).also(&window.span, "this step"));
         }
         let (dimension, track) = (after(&steps, inner.dimension()), inner.track());
         let kind = Kind::Filtered(Box::new(inner), steps);
@@ -64,7 +65,7 @@ impl Checker<'_> {
         let over_time = !shifted && second.is_some();
         let operation = match second {
             Some(distance) if shifted => {
-                let distance = self.expr(distance, &mut Scope::section())?;
+                let distance = self.expr(distance, &mut scope.of_section())?;
                 let found = self.number_type(&distance)?;
                 let needed = format!("a distance along the axis ({})", axis.in_words());
                 self.suits("distance", found == axis, &needed, found, &distance.span)?;
@@ -72,7 +73,7 @@ impl Checker<'_> {
             }
             Some(second)
                 if !(matches!(&second.node, Node::Path(path) if path == "time")
-                    && (self.has_time || axis == Dimension::TIME)) =>
+                    && (self.time.is_some() || axis == Dimension::TIME)) =>
             {
                 let problem = problem!(
                     "arguments",
@@ -80,7 +81,7 @@ impl Checker<'_> {
                     "`{}` is computed over the axis or over `time`",
                     name.node
                 );
-                return self.refuse(if self.has_time {
+                return self.refuse(if self.time.is_some() {
                     problem
                 } else {
                     problem.help("the protocol has no field `time`")
@@ -116,6 +117,7 @@ impl Checker<'_> {
         scope: &mut Scope,
     ) -> Option<Expr> {
         let reducer = self.reducer(reducer, true)?;
+        scope.may_miss = true;
         let of = self.expr(of, scope)?;
         let dimension = reducer.gives(of.dimension(), self.axis_dimension());
         let track = of.track();

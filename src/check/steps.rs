@@ -45,7 +45,12 @@ impl Checker<'_> {
 
     fn steps(&mut self, text: &Text) -> Option<Vec<Step>> {
         let written = from_pest::chain(text, self.problems)?;
-        self.few_steps(&written, Self::step)
+        self.steps_of(&written)
+    }
+
+    /// The steps of a chain as written.
+    pub fn steps_of(&mut self, written: &[At<WrittenStep>]) -> Option<Vec<Step>> {
+        self.few_steps(written, Self::step)
     }
 
     /// The steps that each of these gives, one after the other.

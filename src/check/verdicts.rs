@@ -3,8 +3,9 @@
 use std::collections::BTreeSet;
 
 use super::evaluate::is_whole;
+use super::outcomes::{bare, ends, told};
 use super::prelude::*;
-use crate::syntax::phrase::{OverVerdicts, Verdict as Written};
+use crate::syntax::phrase::{Outcome, OverVerdicts, Verdict as Written};
 
 /// Words of the verdict without a name.
 const VALIDATED: [&str; 2] = ["validated", "not validated"];
@@ -12,7 +13,7 @@ const VALIDATED: [&str; 2] = ["validated", "not validated"];
 const HOLDS: [&str; 2] = ["holds", "does not hold"];
 /// Words of a report for a verdict that cannot be given or is not given yet. No verdict may use
 /// them.
-const NEITHER: [&str; 2] = ["not assessable", "open"];
+pub const NEITHER: [&str; 2] = ["not assessable", "open"];
 /// Words by which a passed verdict is known: one that is failed says none of them, unless it denies
 /// it.
 const PASSED: [&str; 11] = [
@@ -71,13 +72,20 @@ impl Checker<'_> {
         names: &Names,
     ) -> VerdictRule {
         let all: Vec<usize> = (0..quantities.len()).collect();
-        let (words, own_words) = self.verdict_words(block, VALIDATED);
+        let all_of = all.clone();
+        let outcomes =
+            block.and_then(|block| self.outcomes(block, &all_of, None, quantities, names));
+        let (words, own_words) = match &outcomes {
+            Some(grades) => (ends(grades), true),
+            None => self.verdict_words(block, VALIDATED),
+        };
         let field = block.and_then(|block| block.field("validated"));
         let rule =
             field.map_or("when every limit holds".into(), |field| normalised(&field.value.text));
-        let decision = match field {
-            Some(field) => self.decision(field, all, None, quantities, names),
-            None => Decision::Limits { rule: Rule::EveryLimit, quantities: all },
+        let decision = match (outcomes, field) {
+            (Some(grades), _) => Decision::Ordered(grades),
+            (_, Some(field)) => self.decision(field, all, None, quantities, names),
+            _ => Decision::Limits { rule: Rule::EveryLimit, quantities: all },
         };
         VerdictRule {
             name: None,
@@ -94,10 +102,14 @@ impl Checker<'_> {
     }
 
     fn with_name(&mut self, block: &Block, quantities: &[Quantity], names: &Names) -> VerdictRule {
-        let (words, own_words) = self.verdict_words(Some(block), HOLDS);
-        let (holds, person, of) =
-            (block.field("holds"), block.field("judged by"), block.field("of"));
+        let of = block.field("of");
         let about = self.about(of, quantities);
+        let outcomes = self.outcomes(block, &about, of, quantities, names);
+        let (words, own_words) = match &outcomes {
+            Some(grades) => (ends(grades), true),
+            None => self.verdict_words(Some(block), HOLDS),
+        };
+        let (holds, person) = (block.field("holds"), block.field("judged by"));
         let mut criterion = holds.map_or_else(String::new, |field| {
             format!("{} {}", words[0], normalised(&field.value.text))
         });
@@ -105,6 +117,14 @@ impl Checker<'_> {
             criterion = format!("{criterion} (of {})", normalised(&of.value.text));
         }
         let decision = match (holds, person) {
+            _ if let Some(grades) = outcomes => {
+                if let Some(other) = holds.or(person) {
+                    let says = "a verdict has either outcomes or one rule";
+                    self.tell(error("verdict-rule", says, &other.key));
+                }
+                criterion = block.fields_named("outcome").map(told).collect::<Vec<_>>().join("; ");
+                Decision::Ordered(grades)
+            }
             (Some(field), None) => self.decision(field, about, of, quantities, names),
             (None, Some(field)) => {
                 self.needs_limits(of, "a person decides this verdict");
@@ -137,6 +157,34 @@ impl Checker<'_> {
             notes: block.notes(),
             span: block.place(),
         }
+    }
+
+    /// The outcomes of a verdict in order; `None` where it has none.
+    fn outcomes(
+        &mut self,
+        block: &Block,
+        about: &[usize],
+        of: Option<&Field>,
+        quantities: &[Quantity],
+        names: &Names,
+    ) -> Option<Vec<Grade>> {
+        let fields: Vec<Field> = block.fields_named("outcome").cloned().collect();
+        if fields.is_empty() {
+            return None;
+        }
+        let written: Vec<_> = fields
+            .iter()
+            .map(|field| from_pest::outcome_of_verdict(&field.value, self.problems))
+            .collect();
+        self.outcomes_in_order(&fields, &written.iter().flatten().map(bare).collect::<Vec<_>>());
+        let grade = |written: Outcome<Written>| Grade {
+            word: written.word.node.clone(),
+            holds: written.holds,
+            when: written
+                .when
+                .map(|rule| Box::new(self.decided(rule, of, about.to_vec(), quantities, names))),
+        };
+        Some(written.into_iter().flatten().map(grade).collect())
     }
 
     /// The two words of a verdict, and whether the protocol states them.
@@ -181,6 +229,11 @@ impl Checker<'_> {
             if known.iter().any(|known| known == name) {
                 // A quantity that is not in the plan has an error that is reported elsewhere.
                 found.extend(quantities.iter().position(|quantity| quantity.id == name));
+            } else if let members = self.members_of(name)
+                && !members.is_empty()
+            {
+                let here = |quantity: &Quantity| members.contains(&quantity.id);
+                found.extend((0..quantities.len()).filter(|&at| here(&quantities[at])));
             } else if KINDS.contains(&name) {
                 let before = found.len();
                 found.extend((0..quantities.len()).filter(|&at| kind(&quantities[at]) == name));
@@ -199,6 +252,14 @@ impl Checker<'_> {
             }
         }
         found.into_iter().collect()
+    }
+
+    /// The quantities of a family, by its name as written.
+    fn members_of(&self, family: &str) -> Vec<String> {
+        let of_family = |block: &&Block| {
+            block.span().filled.as_ref().is_some_and(|filled| filled.member.family == family)
+        };
+        self.blocks_of("quantity").filter(of_family).map(Block::own_name).collect()
     }
 
     /// Reports a field `of` where no limits count.
@@ -223,11 +284,26 @@ impl Checker<'_> {
         quantities: &[Quantity],
         names: &Names,
     ) -> Decision {
+        match from_pest::verdict(&field.value, self.problems) {
+            None => Decision::Limits { rule: Rule::EveryLimit, quantities: about },
+            Some(written) => self.decided(written, of, about, quantities, names),
+        }
+    }
+
+    /// What a rule means: over the limits of quantities, or over other verdicts.
+    fn decided(
+        &mut self,
+        written: Written,
+        of: Option<&Field>,
+        about: Vec<usize>,
+        quantities: &[Quantity],
+        names: &Names,
+    ) -> Decision {
         let every = |quantities| Decision::Limits { rule: Rule::EveryLimit, quantities };
-        let (count, of_limits) = match from_pest::verdict(&field.value, self.problems) {
-            None | Some(Written::EveryLimit) => return every(about),
-            Some(Written::AtLeast { count, of_limits }) => (count, of_limits),
-            Some(Written::Over(over)) => {
+        let (count, of_limits) = match written {
+            Written::EveryLimit => return every(about),
+            Written::AtLeast { count, of_limits } => (count, of_limits),
+            Written::Over(over) => {
                 self.needs_limits(of, "this rule uses other verdicts");
                 return self.over(&over, names).map_or_else(|| every(about), Decision::Verdicts);
             }
@@ -310,15 +386,14 @@ impl Checker<'_> {
         done: &mut BTreeSet<usize>,
     ) {
         let verdict = &verdicts[at];
-        let (Some(name), Decision::Verdicts(over)) = (&verdict.name, &verdict.decision) else {
-            return;
-        };
+        let Some(name) = &verdict.name else { return };
+        let others = verdict.decision.verdicts();
         if done.contains(&at) {
             return;
         }
         self.deeper(from, |checker| {
             checker.inside("verdict", name, from, |checker| {
-                over.verdicts()
+                others
                     .into_iter()
                     .for_each(|next| checker.follow(next, verdicts, &verdict.span, done));
                 Some(())
@@ -329,9 +404,8 @@ impl Checker<'_> {
 
     /// Warns of a limit that no verdict uses, as it has no effect.
     fn without_verdict(&mut self, quantities: &[Quantity], verdicts: &[VerdictRule]) {
-        let about = |at: usize| {
-            verdicts.iter().any(|verdict| matches!(&verdict.decision, Decision::Limits { quantities, .. } if quantities.contains(&at)))
-        };
+        let about =
+            |at: usize| verdicts.iter().any(|verdict| verdict.decision.quantities().contains(&at));
         for (at, quantity) in quantities.iter().enumerate() {
             if !quantity.limits.is_empty() && !about(at) {
                 let id = &quantity.id;
@@ -343,7 +417,7 @@ impl Checker<'_> {
 }
 
 /// Whether the word of a failed verdict has one of a passed verdict, its own or a usual one.
-fn says_passed(bad: &str, good: &str) -> bool {
+pub fn says_passed(bad: &str, good: &str) -> bool {
     let words = |text: &str| -> Vec<String> {
         text.to_lowercase()
             .split(|c: char| !c.is_alphanumeric())

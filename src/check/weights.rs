@@ -23,8 +23,9 @@ impl Checker<'_> {
             return self.refuse(error("no-group", says, span).help(help));
         }
         let name = match &of.node {
-            Node::Share { of_sections, condition } => {
-                return self.group_share(*of_sections, condition, Some(by), span, scope);
+            Node::Share { counted, of_sections, condition } => {
+                let of = (*counted, *of_sections);
+                return self.group_share(of, condition, Some(by), span, scope);
             }
             Node::Path(_) | Node::Percentile(_) => reducer_name(of),
             _ => return self.no_weight("this", span),

@@ -141,8 +141,8 @@ impl Base<'_> {
     fn cell(&self) -> Cell {
         let Self { plan, judged, .. } = self;
         let about: Vec<usize> = match &plan.overall().decision {
-            Decision::Limits { quantities, .. } => quantities.clone(),
             Decision::Verdicts(_) | Decision::Person(_) => (0..plan.quantities.len()).collect(),
+            decision => decision.quantities(),
         };
         let limits = about.iter().filter_map(|&at| judged.quantities.get(at));
         let limits = limits.flat_map(|quantity| {

@@ -12,8 +12,8 @@ use super::{
 };
 use crate::check::evaluate::{shape, words};
 use crate::check::plan::{
-    Decision, Evaluation, Expr, Input, Key, Kind, Limit, OfSignals, Plan, Plausibility, Position,
-    Quantity, Report, Scope, Step, Taken, Test, Valued,
+    Evaluation, Expr, Input, Key, Kind, Limit, OfSignals, Plan, Plausibility, Position, Quantity,
+    Report, Scope, Step, Taken, Test, Valued,
 };
 use crate::source::Span;
 use crate::units::Dimension;
@@ -137,7 +137,8 @@ impl Builder {
     fn input(&mut self, input: &Input, own: Option<Own<'_>>) -> InputNode {
         let own = match (&input.signal, own) {
             (Some(signal), _) if !matches!(input.taken, Taken::OfBoth(_)) => {
-                self.own(signal, &input.chain, &input.span)
+                let own = self.own(signal, &input.chain, &input.span);
+                Own { processed: self.present(own.processed, signal), ..own }
             }
             (_, Some(own)) => own,
             // Not reached: the checker allows an input without signal only where there is an own
@@ -232,18 +233,12 @@ impl Builder {
             return;
         }
         let verdict = &plan.verdicts[at];
-        let inputs = match &verdict.decision {
-            Decision::Limits { quantities: about, .. } => about
-                .iter()
-                .flat_map(|&at| quantities[at].limits.iter().map(|nodes| nodes.limit))
-                .collect(),
-            Decision::Verdicts(over) => {
-                let inputs = over.verdicts();
-                inputs.iter().for_each(|&input| self.verdict(plan, quantities, input, nodes));
-                inputs.into_iter().filter_map(|input| nodes[input]).collect()
-            }
-            Decision::Person(_) => Vec::new(),
-        };
+        let others = verdict.decision.verdicts();
+        others.iter().for_each(|&input| self.verdict(plan, quantities, input, nodes));
+        let about = verdict.decision.quantities();
+        let limits = about.iter().flat_map(|&at| quantities[at].limits.iter());
+        let inputs = limits.map(|nodes| nodes.limit);
+        let inputs = inputs.chain(others.into_iter().filter_map(|other| nodes[other])).collect();
         let (label, kind) = match &verdict.name {
             Some(name) => (format!("{name}: {}", verdict.criterion), format!("verdict {name}")),
             None => (verdict.criterion.clone(), "verdict".to_string()),

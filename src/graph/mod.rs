@@ -125,6 +125,12 @@ pub enum Operation {
     Level,
     /// The first input whose condition on the section holds, else the last.
     Select(Vec<Expr>),
+    /// For each sample the first input whose condition holds, else one that follows them without a
+    /// condition; none where there is no such one. The conditions, 1 where they hold and else 0,
+    /// are the last inputs: so many.
+    Choose(usize),
+    /// Leaves out the samples that there are not.
+    Present,
     /// A step over the whole record.
     Step(StepSpec),
     /// The samples of the section.
@@ -159,10 +165,11 @@ impl Operation {
             | Self::Apply(_)
             | Self::OverAxis(_)
             | Self::Level
-            | Self::Select(_) => Stage::Derive,
+            | Self::Select(_)
+            | Self::Choose(_) => Stage::Derive,
             Self::Step(_) => Stage::Filter,
             Self::Window(_) => Stage::Window,
-            Self::Cut => Stage::Cut,
+            Self::Cut | Self::Present => Stage::Cut,
             Self::Reduce(_) | Self::Value(_) => Stage::Process,
             Self::Compare(_) => Stage::Compare,
             Self::Estimate(_) | Self::Report(_) => Stage::Estimate,

@@ -55,6 +55,19 @@ pub fn longest_held_share(values: &[f64]) -> Option<f64> {
     (!values.is_empty()).then(|| longest as f64 / values.len() as f64)
 }
 
+/// The longest run of samples other than 0, from the first to the last of them, in the unit of the
+/// axis; 0 for a run of one sample and for none.
+///
+/// `None` without samples.
+pub fn longest_run(axis: &[f64], holds: &[f64]) -> Option<f64> {
+    let (mut longest, mut start): (f64, Option<f64>) = (0.0, None);
+    for (&at, &holds) in axis.iter().zip(holds) {
+        start = start.or(Some(at)).filter(|_| holds != 0.0);
+        longest = start.map_or(longest, |start| longest.max(at - start));
+    }
+    (!holds.is_empty()).then_some(longest)
+}
+
 /// Share of the samples at the smallest or at the largest value, the larger of both. It is large
 /// for a saturated recorder.
 ///
@@ -390,6 +403,11 @@ mod tests {
         assert_eq!(longest_held_share(&[1.0, 1.0, 1.0, 2.0, 2.0]), Some(0.6));
         assert_eq!(longest_held_share(&[1.0, 2.0, 3.0, 4.0]), Some(0.0));
         assert_eq!(longest_held_share(&[7.0; 9]), Some(1.0));
+        let axis = [0.0, 1.0, 2.0, 3.5, 4.0, 6.0];
+        assert_eq!(longest_run(&axis, &[1.0, 1.0, 0.0, 1.0, 1.0, 1.0]), Some(2.5));
+        assert_eq!(longest_run(&axis, &[1.0, 1.0, 1.0, 0.0, 0.0, 1.0]), Some(2.0));
+        assert_eq!(longest_run(&axis, &[0.0, 1.0, 0.0, 0.0, 0.0, 0.0]), Some(0.0));
+        assert_eq!(longest_run(&[], &[]), None);
         assert_eq!(share_at_extreme(&[-1.0, 0.5, 2.0, 2.0, 2.0, 0.0]), Some(0.5));
         assert_eq!(resolution(&[0.5, 1.0, 0.75, 1.25]), Some(0.25));
         assert_eq!(resolution(&[3.0, 3.0]), Some(0.0));

@@ -176,6 +176,7 @@ fn statistics(carried: &Carried, compiled: &Compiled) -> Check {
         verdict_text: Kind::of(&judged.quantities).verdict_words(judged.verdict).into(),
         verdict: judged.verdict,
         own_word: judged.own_word,
+        outcome: judged.outcome,
         reasons: judged.reasons,
         provisional: compiled.plan.values.provisional.clone(),
         verdicts: judged.verdicts,

@@ -50,7 +50,7 @@ pub use quantity::{
 pub use reason::{FindingData, OfSections, Reason, UnusedSection};
 pub use remark::{OutlyingSection, Remark, SectionOffset};
 pub use report::{Identification, ReportItem};
-pub use scope::{RecordName, Scope, StatisticName, zones};
+pub use scope::{OUTCOME, RecordName, Scope, StatisticName, zones};
 pub use spread::{ClassSpread, Furthest, OfRecord, Spread};
 pub use statement::{RemainsOf, Statement};
 pub use verdict::{Outcome, Verdict, VerdictResult};
@@ -82,6 +82,9 @@ pub struct Certification {
     /// The same in the protocol's own words, if it has some: `accepted`.
     #[serde(rename = "verdict_word", default, skip_serializing_if = "Option::is_none")]
     pub own_word: Option<String>,
+    /// Of several outcomes that the protocol puts in order, the one that applies.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub outcome: Option<String>,
     /// Note on the verdict if the simulation was changed after the comparison.
     #[serde(flatten, with = "told::verdict_note")]
     #[schemars(with = "told::NoneOrNote<Remark>")]

@@ -22,6 +22,9 @@ pub struct QuantityResult {
     pub figures: Figures,
     /// All criteria are met; `None` if not assessable.
     pub holds: Option<bool>,
+    /// Of several outcomes that the protocol puts in order, the one that applies.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub outcome: Option<String>,
     /// Why it is not assessable.
     #[serde(flatten, with = "told::reason")]
     #[schemars(with = "told::NoneOrReason<Reason>")]

@@ -156,6 +156,7 @@ pub enum Reason {
         to: f64,
     },
     NoSampleInside,
+    NoSampleSatisfies,
     TooFewSamples,
     MeanOfNothing,
     RecordTooShort {

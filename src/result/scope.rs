@@ -199,6 +199,9 @@ pub enum StatisticName {
     Other(String),
 }
 
+/// The number of the outcome of a quantity whose protocol puts several in order.
+pub const OUTCOME: &str = "outcome";
+
 impl From<String> for StatisticName {
     fn from(name: String) -> Self {
         match name.as_str() {

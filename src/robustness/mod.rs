@@ -139,6 +139,7 @@ pub fn countable(compiled: &Compiled) -> Result<(), Problems> {
         Decision::Limits { .. } => return Ok(()),
         Decision::Verdicts(_) => "is over other verdicts",
         Decision::Person(_) => "is judged by a person",
+        Decision::Ordered(_) => "has several outcomes in order",
     };
     let name = overall.name.as_ref().map_or_else(String::new, |name| format!(" `{name}`"));
     let problem = Problem::error(

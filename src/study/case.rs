@@ -4,7 +4,9 @@ use crate::catalog::Statistic;
 use crate::metrics::moments::Moment;
 use crate::metrics::percentile::{Method, percentile};
 use crate::result::{Direction, Reason, Scope, StatisticName, UnusedSection};
-use crate::run::pool::{Estimator, Pool, Pooled, PooledLimit, PooledMinimum, PooledQuantity, Rule};
+use crate::run::pool::{
+    Bounds, Estimator, Pool, Pooled, PooledLimit, PooledMinimum, PooledQuantity, Rule,
+};
 
 /// Tolerance for rounding where a value equals its limit, which counts as met. Relative to the
 /// limit.
@@ -293,10 +295,8 @@ fn quantity(pooled: &PooledQuantity) -> Quantity {
 }
 
 fn measure(pooled: &PooledQuantity, limit: &PooledLimit) -> Measure {
-    let (name, each, evaluated) = match &limit.estimate {
-        Pooled::Estimate(estimator) => {
-            (limit.title.clone(), false, Evaluated::Rows(estimator.clone()))
-        }
+    let (name, evaluated) = match &limit.estimate {
+        Pooled::Estimate(estimator) => (limit.title.clone(), Evaluated::Rows(estimator.clone())),
         Pooled::Statistic(statistic, ddof) => {
             // Every value meets its limit if the one nearest to it does.
             let nearest = match limit.direction {
@@ -306,7 +306,7 @@ fn measure(pooled: &PooledQuantity, limit: &PooledLimit) -> Measure {
             };
             let each = *statistic == Statistic::Each;
             let over = Statistic::named(nearest).filter(|_| each).unwrap_or(*statistic);
-            (statistic.name(), each, Evaluated::Statistic(over, *ddof))
+            (statistic.name(), Evaluated::Statistic(over, *ddof))
         }
     };
     let kind = match &evaluated {
@@ -318,9 +318,9 @@ fn measure(pooled: &PooledQuantity, limit: &PooledLimit) -> Measure {
         },
         _ => Kind::Values,
     };
-    let (bound, scale) = match &evaluated {
-        Evaluated::Statistic(..) if !each && limit.bounds[0] > 0.0 => (1.0, 1.0 / limit.bounds[0]),
-        Evaluated::Statistic(..) if !each => (limit.bounds[0], 1.0),
+    let (bound, scale) = match (&evaluated, &limit.bounds) {
+        (Evaluated::Statistic(..), Bounds::Common(bound)) if *bound > 0.0 => (1.0, 1.0 / bound),
+        (Evaluated::Statistic(..), Bounds::Common(bound)) => (*bound, 1.0),
         _ => (1.0, 1.0),
     };
     let room = EQUAL * bound.abs();
@@ -333,18 +333,25 @@ fn measure(pooled: &PooledQuantity, limit: &PooledLimit) -> Measure {
         if !limit.inside[at] {
             return Vec::new();
         }
-        let own = if each && limit.bounds[at] > 0.0 { 1.0 / limit.bounds[at] } else { 1.0 };
+        let own = |row: usize| match &limit.bounds {
+            Bounds::Own(bounds) if bounds[at][row] > 0.0 => 1.0 / bounds[at][row],
+            _ => 1.0,
+        };
         values
             .iter()
-            .filter(|(position, _)| limit.positions.get(*position).copied().unwrap_or(true))
-            .map(|(_, value)| value * own)
+            .enumerate()
+            .filter(|(_, (position, _))| limit.positions.get(*position).copied().unwrap_or(true))
+            .map(|(row, (_, value))| value * own(row))
             .collect()
     };
     Measure {
         name: name.into(),
         title: limit.title.clone(),
         scope: limit.scope.clone(),
-        limit: if each { 1.0 } else { limit.bounds[0] },
+        limit: match limit.bounds {
+            Bounds::Common(bound) => bound,
+            Bounds::Own(_) => 1.0,
+        },
         direction: limit.direction,
         kind,
         evaluated,

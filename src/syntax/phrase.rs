@@ -38,6 +38,40 @@ impl<T> At<T> {
     }
 }
 
+impl Phrase {
+    /// The phrases that it is directly made of.
+    pub fn parts(&self) -> Vec<&Phrase> {
+        match &self.node {
+            Node::Number(_)
+            | Node::Percentile(_)
+            | Node::PercentileBy(_)
+            | Node::Path(_)
+            | Node::Quoted(_)
+            | Node::PlaceOf(..) => Vec::new(),
+            Node::Negative(inner)
+            | Node::Not(inner)
+            | Node::Magnitude(inner)
+            | Node::Power(inner, _)
+            | Node::Through(inner, _)
+            | Node::ForEach(inner, _)
+            | Node::Table { of: inner, .. }
+            | Node::Bound { of: inner, .. }
+            | Node::Share { condition: inner, .. } => vec![inner],
+            Node::Binary(_, left, right)
+            | Node::Reduced(left, right)
+            | Node::Over(left, right)
+            | Node::Weighted(left, right) => vec![left, right],
+            Node::Near { value, target, tolerance, .. } => vec![value, target, tolerance],
+            Node::Call(_, arguments) => arguments.iter().collect(),
+            Node::Fit(fit) => fit.over.iter().chain(&fit.at).collect(),
+            Node::Cases(arms, otherwise) => {
+                let arms = arms.iter().flat_map(|(value, condition)| [value, condition]);
+                arms.chain(otherwise.as_deref()).collect()
+            }
+        }
+    }
+}
+
 impl At<String> {
     /// The word as a text of its own.
     pub fn to_text(&self) -> Text {
@@ -169,8 +203,8 @@ pub enum Node {
     Reduced(Box<Phrase>, Box<Phrase>),
     /// `Y at side R`: the path and the words after `at`.
     PlaceOf(At<String>, Vec<At<String>>),
-    /// `Y through LP20`.
-    Through(Box<Phrase>, At<String>),
+    /// `Y through LP20`, `Y through (low-pass 10 Hz, order 4, then magnitude)`.
+    Through(Box<Phrase>, Vec<At<Step>>),
     /// `slope over cant_angle`: a value of a signal over another signal in place of the axis.
     Over(Box<Phrase>, Box<Phrase>),
     /// `upper 95 % of std`: an end of the confidence interval of an estimate.
@@ -181,8 +215,9 @@ pub enum Node {
         of: Box<Phrase>,
         bootstrap: bool,
     },
-    /// `share where value <= 1`, `share of sections where radius < 300 m`.
+    /// `share where value <= 1`, `share of sections where radius < 300 m`, `longest run where Y > Q`.
     Share {
+        counted: Counted,
         of_sections: bool,
         condition: Box<Phrase>,
     },
@@ -194,6 +229,18 @@ pub enum Node {
     ForEach(Box<Phrase>, Vec<At<String>>),
     /// `a when b, c when d, otherwise e`.
     Cases(Vec<(Phrase, Phrase)>, Option<Box<Phrase>>),
+}
+
+/// What is told of the values or samples that satisfy a condition.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Counted {
+    Share,
+    /// How many there are.
+    Count,
+    /// The longest stretch of samples one after the other, along the axis or in time.
+    LongestRun {
+        in_time: bool,
+    },
 }
 
 /// A regression of the values of a group over data of their sections, and the point at which it is
@@ -300,6 +347,15 @@ pub enum Verdict {
     EveryLimit,
     AtLeast { count: Phrase, of_limits: bool },
     Over(OverVerdicts),
+}
+
+/// One of several outcomes in order: `good: holds when mean <= 2`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcome<T> {
+    pub word: At<String>,
+    pub holds: bool,
+    /// `None` of the last one, if no other applies.
+    pub when: Option<T>,
 }
 
 /// A rule over other verdicts.

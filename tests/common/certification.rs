@@ -86,6 +86,7 @@ pub fn certification() -> Certification {
     )));
     let traces = (0..6).map(|at| trace(at, &quantities[at], &mut noise)).collect();
     Certification {
+        outcome: None,
         fishplate: THIS.into(),
         format: FORMAT,
         verdict_text: "not validated".into(),
@@ -427,6 +428,7 @@ fn quantity(kind: &Kind, sections: &[SectionResult], noise: &mut Noise) -> Quant
         statistic("mean", "mean", mean, kind.limit * 2.0 / 3.0, "2/3 of std"),
     ];
     QuantityResult {
+        outcome: None,
         from: None,
         among: None,
         repeats: false,

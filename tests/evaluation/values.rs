@@ -12,7 +12,9 @@ use fishplate::data::Campaign;
 use fishplate::library;
 use fishplate::problem::Problems;
 use fishplate::report::figure::{self, Zones};
-use fishplate::result::{Certification, Occurrence, PairValue, StatisticResult, Verdict};
+use fishplate::result::{
+    Certification, Occurrence, PairValue, QuantityResult, StatisticResult, Verdict,
+};
 use fishplate::run::Settings;
 use fishplate::source::Source;
 use serde_json::Value;
@@ -56,6 +58,92 @@ fn of_group<'a>(
             && one.scope.has_zone(Some(zone))
             && has(&one.scope.keys, "wheelset", wheelset)
     })
+}
+
+/// Conditions on samples, functions of samples, and limits of single values against NumPy, 1e-9
+/// relative; see `cases/values/conditions.py`.
+#[test]
+fn conditions_on_samples_and_values_agree_with_numpy() {
+    let text = fs::read_to_string(root().join("tests/cases/values/conditions.fp")).expect("a text");
+    let found = certified(&compiled("conditions.fp", &text), &root().join("examples/coach"));
+    let expected = fs::read_to_string(root().join("tests/cases/values/conditions.json"));
+    let expected: Value = serde_json::from_str(&expected.expect("expected numbers")).expect("JSON");
+    let same = |want: &Value, got: f64, what: &str| {
+        let want = want.as_f64().unwrap_or_else(|| panic!("{what}: {got}, and none expected"));
+        assert!((want - got).abs() <= 1e-9 * want.abs().max(1.0), "{what}: {want} {got}");
+    };
+    for (id, values) in expected.as_object().expect("quantities") {
+        let quantity = found.quantities.iter().find(|one| one.id == *id).expect("a quantity");
+        assert_eq!(quantity.values.len(), 13, "{id}");
+        for pair in &quantity.values {
+            let (want, what) = (&values[&pair.section], format!("{id} {}", pair.section));
+            if id == "mixed" {
+                same(&want[0], pair.simulated.expect("a value"), &what);
+                same(&want[1], pair.measured.expect("a value"), &what);
+            } else {
+                same(want, pair.difference, &what);
+            }
+        }
+    }
+    limits_follow_from_values(found.quantities.last().expect("a quantity"));
+}
+
+/// The limits of single values, shares, counts and statistics of an expression, from the values.
+fn limits_follow_from_values(mixed: &QuantityResult) {
+    let limit = |pair: &PairValue| (0.1 * pair.measured.expect("a value").abs()).max(2.0);
+    let values = &mixed.values;
+    for pair in values {
+        assert!((pair.limit.expect("a limit") - limit(pair)).abs() < 1e-12, "{}", pair.section);
+    }
+    let n = values.len() as f64;
+    let mean = |of: &dyn Fn(&PairValue) -> f64| values.iter().map(of).sum::<f64>() / n;
+    let average = mean(&|pair| pair.difference);
+    let squares = mean(&|pair| (pair.difference - average).powi(2));
+    let std = (squares * n / (n - 1.0)).sqrt();
+    let magnitude = mean(&|pair| pair.difference.abs());
+    let wanted = [
+        mean(&|pair| f64::from(u8::from(pair.difference.abs() <= limit(pair)))),
+        values.iter().filter(|pair| pair.difference.abs() > 2.0).count() as f64,
+        magnitude,
+        average + 3.0 * std,
+        std,
+    ];
+    let told: Vec<f64> =
+        mixed.statistics[1..].iter().map(|one| one.value.expect("a value")).collect();
+    for (want, told) in wanted.iter().zip(&told) {
+        assert!((want - told).abs() < 1e-12 * want.abs().max(1.0), "{wanted:?} {told:?}");
+    }
+    let bound = mixed.statistics[5].limit.expect("a limit");
+    assert!((bound - 2.0 * magnitude).abs() < 1e-12, "{bound}");
+    let squares =
+        mean(&|pair| (pair.measured.expect("a value") - pair.simulated.expect("a value")).powi(2));
+    let reported: Vec<f64> = mixed.reported.iter().map(|one| one.value.expect("a value")).collect();
+    let wanted = [magnitude / 2.0, squares.sqrt()];
+    assert!(wanted.iter().zip(&reported).all(|(a, b)| (a - b).abs() < 1e-12), "{reported:?}");
+}
+
+/// The differences have a mean of 2.870 kN and a standard deviation of 3.669 kN (`conditions.json`);
+/// three of 13 are above 6 kN, one is above 6.2 kN.
+#[test]
+fn the_first_outcome_whose_rule_is_met_applies() {
+    let text = fs::read_to_string(root().join("tests/cases/values/outcomes.fp")).expect("a text");
+    for (scale, of_quantity, holds, overall, verdict) in [
+        ("0.2", "excellent", true, "validated", Verdict::Validated),
+        ("0.9", "good", true, "validated with restriction", Verdict::Validated),
+        ("1", "fair", false, "validated with restriction", Verdict::Validated),
+        ("2", "fair", false, "not validated", Verdict::NotValidated),
+        ("3", "poor", false, "not validated", Verdict::NotValidated),
+    ] {
+        let text = text.replace("default  1\n", &format!("default  {scale}\n"));
+        let found = certified(&compiled("outcomes.fp", &text), &root().join("examples/coach"));
+        let graded = found.quantities.iter().find(|one| one.id == "graded").expect("a quantity");
+        assert_eq!(graded.outcome.as_deref(), Some(of_quantity), "{scale}");
+        assert_eq!(graded.holds, Some(holds), "{scale}");
+        assert_eq!(found.outcome.as_deref(), Some(overall), "{scale}");
+        assert_eq!(found.verdict, verdict, "{scale}");
+        // Why it is not a better one.
+        assert_eq!(found.reasons.is_empty(), overall == "validated", "{scale}");
+    }
 }
 
 /// Estimates of each zone and wheelset against NumPy and SciPy, 1e-9 relative; see

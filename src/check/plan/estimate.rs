@@ -108,7 +108,7 @@ impl OfGroup {
         fn of(taking: &Taking) -> Vec<usize> {
             match taking {
                 Taking::Other { quantity, .. } => vec![*quantity],
-                Taking::Share { others, .. } => others.iter().flat_map(of).collect(),
+                Taking::Where { others, .. } => others.iter().flat_map(of).collect(),
                 Taking::Bound { of, .. } => of.others(),
                 Taking::EachGroup { of, .. } => of.others(),
                 Taking::Fit(fit) => fit.at.iter().flat_map(OfGroup::others).collect(),
@@ -142,9 +142,11 @@ pub enum Taking {
         confidence: f64,
         bootstrap: bool,
     },
-    /// Share of the rows, or of the sections, that satisfy a condition. [`Kind::Input`] 0 is the
-    /// value of a row; inputs from 1 on are `others`, statistics of other quantities.
-    Share {
+    /// Share of the rows, or of the sections, that satisfy a condition, or how many there are.
+    /// [`Kind::Input`] 0 is the value of a row; inputs from 1 on are `others`, statistics of other
+    /// quantities.
+    Where {
+        share: bool,
         condition: Expr,
         of_sections: bool,
         others: Vec<Taking>,
@@ -159,10 +161,12 @@ pub enum Taking {
         statistic: Statistic,
         ddof: usize,
     },
-    /// A number from data of the group's sections, each section counted once.
+    /// A number from data of the group's sections, each section counted once; or of the rows, of
+    /// which [`Kind::Input`] 0 is the value.
     Data {
         reducer: DataReducer,
         of: Expr,
+        of_rows: bool,
         by: Option<Expr>,
     },
     /// Of one number for each group that the rows form by some keys.

@@ -60,6 +60,11 @@ pub enum Type {
         /// Whether the samples are those of the track record.
         track: bool,
     },
+    /// Whether a condition holds, for each sample of a record.
+    SampleFlags {
+        /// As of samples.
+        track: bool,
+    },
 }
 
 /// How an expression is computed.
@@ -137,13 +142,19 @@ impl Expr {
     pub fn dimension(&self) -> Dimension {
         match self.ty {
             Type::Number(dimension) | Type::Samples { dimension, .. } => dimension,
-            Type::Word(_) | Type::Flag => Dimension::ONE,
+            Type::Word(_) | Type::Flag | Type::SampleFlags { .. } => Dimension::ONE,
         }
     }
 
     /// Whether its samples are those of the track record.
     pub fn track(&self) -> bool {
-        matches!(self.ty, Type::Samples { track: true, .. })
+        matches!(self.ty, Type::Samples { track: true, .. } | Type::SampleFlags { track: true })
+    }
+
+    /// Whether some of its samples may be missing: `Y when Q > 60 kN`.
+    pub fn may_miss_samples(&self) -> bool {
+        let of_samples = |arm: &(Expr, Expr)| matches!(arm.1.ty, Type::SampleFlags { .. });
+        matches!(&self.kind, Kind::Cases(arms, None) if arms.iter().any(of_samples))
     }
 
     /// The parts that it is directly made of.

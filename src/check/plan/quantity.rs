@@ -89,6 +89,8 @@ pub struct Quantity {
     /// The best value, SI, where it is known.
     pub best: Option<f64>,
     pub only: Option<Expr>,
+    /// Words of outcomes in order, the best first; a limit is of the number of the one that applies.
+    pub outcomes: Vec<String>,
     pub limits: Vec<Arc<Limit>>,
     pub reports: Vec<Arc<Report>>,
     pub minimum_signals: usize,

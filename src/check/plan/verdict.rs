@@ -47,6 +47,45 @@ pub enum Decision {
     Verdicts(Over),
     /// By a person.
     Person(String),
+    /// The first of several outcomes whose rule is met; the last has none.
+    Ordered(Vec<Grade>),
+}
+
+/// One of several outcomes of a verdict.
+#[derive(Clone, Debug)]
+pub struct Grade {
+    pub word: String,
+    /// Whether the verdict then holds.
+    pub holds: bool,
+    pub when: Option<Box<Decision>>,
+}
+
+impl Decision {
+    /// The quantities whose limits it needs, each once.
+    pub fn quantities(&self) -> Vec<usize> {
+        match self {
+            Self::Limits { quantities, .. } => quantities.clone(),
+            Self::Verdicts(_) | Self::Person(_) => Vec::new(),
+            Self::Ordered(grades) => of_grades(grades, Self::quantities),
+        }
+    }
+
+    /// The other verdicts that it needs, each once.
+    pub fn verdicts(&self) -> Vec<usize> {
+        match self {
+            Self::Verdicts(over) => over.verdicts(),
+            Self::Limits { .. } | Self::Person(_) => Vec::new(),
+            Self::Ordered(grades) => of_grades(grades, Self::verdicts),
+        }
+    }
+}
+
+fn of_grades(grades: &[Grade], of: fn(&Decision) -> Vec<usize>) -> Vec<usize> {
+    let mut all: Vec<usize> =
+        grades.iter().filter_map(|grade| grade.when.as_deref()).flat_map(of).collect();
+    all.sort_unstable();
+    all.dedup();
+    all
 }
 
 /// A condition on other verdicts, given by their index in

@@ -3,7 +3,9 @@
 use super::super::{NodeId, Operation};
 use super::Builder;
 use crate::check::evaluate::{shape, words};
-use crate::check::plan::{AxisOperation, Expr, Kind, Mapping, Operator, Step, StepSpec};
+use crate::check::plan::{
+    AxisOperation, Expr, Kind, Mapping, Operator, Scalar, Step, StepSpec, Type,
+};
 use crate::source::Span;
 
 impl Builder {
@@ -11,6 +13,7 @@ impl Builder {
     pub(super) fn signal(&mut self, signal: &Expr) -> NodeId {
         let (dimension, from) = (signal.dimension(), &signal.span);
         match &signal.kind {
+            _ if signal.ty == Type::Flag => self.constant(signal),
             Kind::Channel { column, channel, .. } => {
                 let record = if signal.track() { "track" } else { "record" };
                 self.add(
@@ -81,6 +84,7 @@ impl Builder {
             Kind::OverAxis(operation, inner) => self.over_axis(operation, inner, signal),
             Kind::Level(reducer, inner) => {
                 let (_, cut) = self.processed(inner, &[], from);
+                let cut = self.present(cut, inner);
                 let label = format!("{} of {}", reducer.in_words(), self.origin(cut));
                 let kind = format!("reduce {}", reducer.in_words());
                 let number = self.add(
@@ -92,6 +96,25 @@ impl Builder {
                     kind,
                 );
                 self.add(Operation::Level, vec![number], dimension, from, label, "level".into())
+            }
+            Kind::Not(inner) => {
+                let one = Kind::Constant(Scalar::Number(1.0));
+                let one = Expr::number(one, dimension, &signal.span);
+                let inputs = vec![self.signal(&one), self.signal(inner)];
+                let label = format!("not ({})", self.named(inputs[1]));
+                let operation = Operation::Arithmetic(Operator::Subtract);
+                self.add(operation, inputs, dimension, from, label, "not".into())
+            }
+            Kind::Cases(arms, otherwise)
+                if arms.iter().any(|(_, on)| matches!(on.ty, Type::SampleFlags { .. })) =>
+            {
+                let values = arms.iter().map(|(value, _)| value).chain(otherwise.as_deref());
+                let conditions = arms.iter().map(|(_, condition)| condition);
+                let inputs: Vec<NodeId> =
+                    values.chain(conditions).map(|part| self.signal(part)).collect();
+                let operation = Operation::Choose(arms.len());
+                let kind = format!("choose {} {}", arms.len(), inputs.len());
+                self.add(operation, inputs, dimension, from, words(signal), kind)
             }
             Kind::Cases(arms, otherwise) => {
                 let mut inputs: Vec<NodeId> =
@@ -109,12 +132,15 @@ impl Builder {
                 self.add(Operation::Select(conditions), inputs, dimension, from, label, kind)
             }
             // The checker allows sides only in values taken from both sides, which have no node.
-            _ => {
-                let kind = format!("constant {}", shape(signal));
-                let operation = Operation::Constant(signal.clone());
-                self.add(operation, Vec::new(), dimension, from, words(signal), kind)
-            }
+            _ => self.constant(signal),
         }
+    }
+
+    /// A number, or a condition on the section, that is the same all along the record.
+    fn constant(&mut self, of: &Expr) -> NodeId {
+        let kind = format!("constant {}", shape(of));
+        let operation = Operation::Constant(of.clone());
+        self.add(operation, Vec::new(), of.dimension(), &of.span, words(of), kind)
     }
 
     fn over_axis(&mut self, operation: &AxisOperation, inner: &Expr, signal: &Expr) -> NodeId {
@@ -241,10 +267,22 @@ impl Builder {
         (filtered, node)
     }
 
+    /// The samples that there are, of a signal of which some may be missing.
+    pub(super) fn present(&mut self, node: NodeId, signal: &Expr) -> NodeId {
+        if !signal.may_miss_samples() {
+            return node;
+        }
+        let (dimension, label) = (self.nodes[node].dimension, "samples that there are".to_owned());
+        let operation = Operation::Present;
+        self.add(operation, vec![node], dimension, &signal.span, label, "present".into())
+    }
+
     /// The label of the signal that a processed signal was made from.
     pub(super) fn origin(&self, mut node: NodeId) -> String {
-        while let (Operation::Cut | Operation::Window(_) | Operation::Step(_), Some(&input)) =
-            (&self.nodes[node].operation, self.nodes[node].inputs.first())
+        while let (
+            Operation::Cut | Operation::Present | Operation::Window(_) | Operation::Step(_),
+            Some(&input),
+        ) = (&self.nodes[node].operation, self.nodes[node].inputs.first())
         {
             node = input;
         }
@@ -257,6 +295,14 @@ fn symbol(operator: Operator) -> &'static str {
         Operator::Add => " + ",
         Operator::Subtract => " - ",
         Operator::Multiply => " * ",
-        _ => " / ",
+        Operator::Divide => " / ",
+        Operator::And => " and ",
+        Operator::Or => " or ",
+        Operator::Less => " < ",
+        Operator::LessEqual => " <= ",
+        Operator::Greater => " > ",
+        Operator::GreaterEqual => " >= ",
+        Operator::Is => " is ",
+        Operator::IsNot => " is not ",
     }
 }

@@ -79,21 +79,17 @@ impl Group<'_> {
             Taking::EachGroup { reducer, keys, of } => {
                 self.of_each_group(*reducer, keys, of, values)
             }
-            Taking::Share { condition, of_sections: true, by, .. } => {
-                let sections = self.sections();
-                let holds = sections.iter().map(|unit| flag(condition, &unit.known(self.facts)));
-                share(holds, by.as_ref().map(|by| self.weights(by, sections.iter().copied())))
+            Taking::Where { share: false, condition, of_sections, others, .. } => {
+                let holds = self.holding(condition, *of_sections, others, values)?;
+                Ok(holds.into_iter().filter(|holds| *holds).count() as f64)
             }
-            Taking::Share { condition, of_sections: false, others, by } => {
-                let others: Vec<Result<f64, Reason>> =
-                    others.iter().map(|other| self.take(other, values)).collect();
-                let of_row = |(member, value): (&Member<'_>, &f64)| {
-                    let inputs: Vec<Result<f64, Reason>> =
-                        [Ok(*value)].into_iter().chain(others.iter().cloned()).collect();
-                    flag(condition, &Known { inputs: &inputs, ..member.unit.known(self.facts) })
-                };
-                let weights = by.as_ref().map(|by| self.weights(by, self.units_of_rows()));
-                share(self.members.iter().zip(values).map(of_row), weights)
+            Taking::Where { share: true, condition, of_sections, others, by } => {
+                let holds = self.holding(condition, *of_sections, others, values)?;
+                let weights = by.as_ref().map(|by| match of_sections {
+                    true => self.weights(by, self.sections().into_iter()),
+                    false => self.weights(by, self.units_of_rows()),
+                });
+                share(holds.into_iter().map(Ok), weights)
             }
             Taking::Other { quantity, id, statistic, ddof } => {
                 let rows = self.table.get(*quantity);
@@ -106,24 +102,63 @@ impl Group<'_> {
                     reason.about(Subject::Statistic, format!("{} of {id}", statistic.name()))
                 })
             }
-            Taking::Data { reducer, of, by } => {
-                let sections = self.sections();
-                let data = self.data(of, sections.iter().copied())?;
-                match (reducer, by) {
-                    (DataReducer::Statistic(statistic, ddof), Some(by)) => weighted_statistic(
-                        *statistic,
-                        *ddof,
-                        &data,
-                        &self.weights(by, sections.iter().copied())?,
-                    ),
-                    _ => reduced(*reducer, &data),
-                }
+            Taking::Data { reducer, of, of_rows: true, by } => {
+                let data = self.data_of_rows(of, values)?;
+                let weights = by.as_ref().map(|by| self.weights(by, self.units_of_rows()));
+                of_weighted(*reducer, &data, weights.transpose()?)
+            }
+            Taking::Data { reducer, of, of_rows: false, by } => {
+                let sections = || self.sections().into_iter();
+                let data = self.data(of, sections())?;
+                let weights = by.as_ref().map(|by| self.weights(by, sections()));
+                of_weighted(*reducer, &data, weights.transpose()?)
             }
             Taking::Bound { of, upper, confidence, bootstrap } => {
                 self.bound(of, *upper, *confidence, *bootstrap, values)
             }
             Taking::Fit(fit) => self.fit(fit, values),
         }
+    }
+
+    /// Whether a condition holds, for each section or for each row.
+    fn holding(
+        &self,
+        condition: &Expr,
+        of_sections: bool,
+        others: &[Taking],
+        values: &[f64],
+    ) -> Result<Vec<bool>, Reason> {
+        if of_sections {
+            let sections = self.sections();
+            return sections.iter().map(|unit| flag(condition, &unit.known(self.facts))).collect();
+        }
+        let others: Vec<Result<f64, Reason>> =
+            others.iter().map(|other| self.take(other, values)).collect();
+        let of_row = |(member, value): (&Member<'_>, &f64)| {
+            let inputs: Vec<Result<f64, Reason>> =
+                [Ok(*value)].into_iter().chain(others.iter().cloned()).collect();
+            flag(condition, &self.known_of_row(member, &inputs))
+        };
+        self.members.iter().zip(values).map(of_row).collect()
+    }
+
+    /// What names stand for in one row, whose value is the first input.
+    fn known_of_row<'k>(
+        &'k self,
+        member: &'k Member<'_>,
+        inputs: &'k [Result<f64, Reason>],
+    ) -> Known<'k> {
+        let sides = member.row.simulated.zip(member.row.measured);
+        Known { inputs, sides, ..member.unit.known(self.facts) }
+    }
+
+    /// A number of each row.
+    fn data_of_rows(&self, of: &Expr, values: &[f64]) -> Result<Vec<f64>, Reason> {
+        let of_row = |(member, value): (&Member<'_>, &f64)| {
+            number(of, &self.known_of_row(member, &[Ok(*value)]))
+                .map_err(|reason| reason.about(Subject::Section, &member.unit.name))
+        };
+        self.members.iter().zip(values).map(of_row).collect()
     }
 
     fn units_of_rows(&self) -> impl Iterator<Item = &Unit> + Clone {
@@ -281,7 +316,9 @@ impl Group<'_> {
     /// The bound of a share of the values: X of `share where value <= X`, in SI. `None` of other
     /// estimates, and of a bound that differs from section to section.
     pub fn divided_at(&self, of: &OfGroup) -> Option<f64> {
-        let Taking::Share { condition, of_sections: false, others, by: None } = of.alone()? else {
+        let Taking::Where { share: true, condition, of_sections: false, others, by: None } =
+            of.alone()?
+        else {
             return None;
         };
         let Kind::Binary(operator, left, right) = &condition.kind else { return None };
@@ -427,6 +464,20 @@ fn reduced(reducer: DataReducer, numbers: &[f64]) -> Result<f64, Reason> {
     match reducer {
         DataReducer::Total => Ok(numbers.iter().sum()),
         DataReducer::Statistic(statistic, ddof) => statistic_of(statistic, ddof, numbers),
+    }
+}
+
+/// One number of many, which count by weights where there are any.
+fn of_weighted(
+    reducer: DataReducer,
+    data: &[f64],
+    weights: Option<Vec<f64>>,
+) -> Result<f64, Reason> {
+    match (reducer, weights) {
+        (DataReducer::Statistic(statistic, ddof), Some(weights)) => {
+            weighted_statistic(statistic, ddof, data, &weights)
+        }
+        _ => reduced(reducer, data),
     }
 }
 

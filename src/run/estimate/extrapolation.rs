@@ -42,7 +42,7 @@ impl Group<'_> {
             Taking::Statistic(..)
             | Taking::Weighted { .. }
             | Taking::Count
-            | Taking::Share { .. }
+            | Taking::Where { .. }
             | Taking::Other { .. }
             | Taking::Data { .. } => Vec::new(),
         };

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use indexmap::IndexMap;
 
-use super::pool::{Pool, Pooled, PooledLimit, PooledQuantity, pool};
+use super::pool::{Bounds, Pool, Pooled, PooledLimit, PooledQuantity, pool};
 use crate::catalog::Statistic;
 use crate::check::plan::{Keep, Plan, Scalar};
 use crate::metrics::moments::{Moment, Moments, Summed};
@@ -84,7 +84,10 @@ pub fn reduction(
 fn measure(quantity: &PooledQuantity, limit: &PooledLimit) -> Option<Summed> {
     let Pooled::Statistic(Statistic::Named(entry), ddof) = limit.estimate else { return None };
     let kind = Moment::named(entry.name, ddof).filter(|kind| *kind != Moment::Mean)?;
-    let bound = limit.bounds.first().copied().filter(|bound| *bound > 0.0)?;
+    let Bounds::Common(bound) = limit.bounds else { return None };
+    if bound <= 0.0 {
+        return None;
+    }
     let applies = |position: &usize| limit.positions.get(*position).copied().unwrap_or(true);
     let of_section = |(at, values): (usize, &Vec<(usize, f64)>)| {
         let inside = values

@@ -396,8 +396,15 @@ impl OfGroup<'_> {
         if self.depth > self.quantity.limits.len() {
             return Err(Reason::LimitDependsOnItself);
         }
-        let taken = self.group.taken(&limit.bound);
-        let names = Known { inputs: &taken, limits: Some(self), ..*self.known };
+        let mut taken = self.group.taken(&limit.bound);
+        let mut sides = None;
+        // The limit of a single value may depend on it.
+        if matches!(limit.estimate.kind, EstimateKind::Each) {
+            let row = self.group.members.first().map(|member| member.row);
+            taken.insert(0, row.map(|row| row.value).ok_or(Reason::NoValue));
+            sides = row.and_then(|row| row.simulated.zip(row.measured));
+        }
+        let names = Known { inputs: &taken, limits: Some(self), sides, ..*self.known };
         let mut value = number(&limit.bound.expr, &names)?;
         for (factor, condition) in &limit.factors {
             if flag(condition, &names)? {

@@ -227,8 +227,15 @@ pub struct PooledLimit {
     /// For each position of the quantity, whether the limit applies to its values; all where it
     /// states none.
     pub positions: Vec<bool>,
-    /// One bound for each section where every value has its own limit, else one.
-    pub bounds: Vec<f64>,
+    pub bounds: Bounds,
+}
+
+/// What values are compared with, in the unit of the limit.
+#[derive(Clone, Debug)]
+pub enum Bounds {
+    Common(f64),
+    /// Every value has its own limit: of each section in the order of its values.
+    Own(Vec<Vec<f64>>),
 }
 
 /// What a pool is made of.
@@ -245,7 +252,7 @@ struct Making<'a> {
 pub fn pool(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues]) -> Pool {
     let (rule, about) = match &plan.overall().decision {
         Decision::Limits { rule, quantities } => (Some(*rule), quantities.as_slice()),
-        Decision::Verdicts(_) | Decision::Person(_) => (None, &[][..]),
+        Decision::Verdicts(_) | Decision::Person(_) | Decision::Ordered(_) => (None, &[][..]),
     };
     let used = used(units, values);
     let rows = Rows::of_all(plan, facts, &used);
@@ -363,15 +370,16 @@ impl Making<'_> {
         };
         let shown = |bound: Result<f64, Reason>| Some(judging.unit(limit).from_si(bound.ok()?));
         let bounds = if matches!(limit.estimate.kind, EstimateKind::Each) {
-            let own = |unit: &Unit| match unit.fault {
-                Some(_) => Some(f64::NAN),
-                None => shown(judging.own_bound(limit, unit, &[])),
-            };
-            self.units.iter().map(own).collect::<Option<Vec<_>>>()?
+            let mut bounds = vec![Vec::new(); self.units.len()];
+            for member in judging.rows.members {
+                let found = shown(judging.own_bound(limit, member.unit, &[*member]))?;
+                bounds[self.number(member)?].push(found);
+            }
+            Bounds::Own(bounds)
         } else {
             // Data of sections can be used in the limit. This bound is that of all sections; an
             // estimate computes its own.
-            vec![shown(judging.common_bound(limit, part, &own))?]
+            Bounds::Common(shown(judging.common_bound(limit, part, &own))?)
         };
         let estimate = match limit.estimate.statistic() {
             Some((statistic, ddof)) => Pooled::Statistic(statistic, ddof),

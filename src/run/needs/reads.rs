@@ -159,7 +159,7 @@ impl<'a> Reads<'a> {
                 self.keys(keys);
                 self.of_group(of);
             }
-            Taking::Share { condition, others, by, .. } => {
+            Taking::Where { condition, others, by, .. } => {
                 self.exprs.push(condition);
                 self.exprs.extend(by);
                 others.iter().for_each(|other| self.taking(other));

@@ -83,6 +83,8 @@ impl Does {
                 Self::Reduce(Compared(*reducer), plan.sections.percentiles)
             }
             Operation::Select(_)
+            | Operation::Choose(_)
+            | Operation::Present
             | Operation::Value(_)
             | Operation::Compare(_)
             | Operation::Estimate(_)

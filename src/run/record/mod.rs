@@ -26,7 +26,7 @@ pub use evaluate::Held;
 pub use memo::{Keys, Numbers};
 pub use opened::{Fault, Opened, file_hash};
 pub use section_records::{Columns, Counts, SectionRecords, Sharing};
-pub use signal::{Along, Rate, Samples, Signal, apply, arithmetic, each, mapped};
+pub use signal::{Along, Rate, Samples, Signal, apply, arithmetic, choose, each, mapped};
 pub use state::NodeValue;
 pub use stretch::{Soundness, Stretches};
 pub use trial::Trial;

@@ -140,6 +140,31 @@ impl Samples {
         Self { along: Arc::clone(&self.along), values: Arc::new(values) }
     }
 
+    /// Whether both have their samples at the same points.
+    fn along_with(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.along, &other.along) || self.along.axis == other.along.axis
+    }
+
+    /// The samples that there are: [`choose`] leaves some out.
+    ///
+    /// # Errors
+    /// There is none.
+    pub fn present(&self) -> Result<Self, Reason> {
+        let there: Vec<usize> =
+            (0..self.values.len()).filter(|&sample| !self.values[sample].is_nan()).collect();
+        if there.is_empty() {
+            return Err(Reason::NoSampleSatisfies);
+        }
+        let of = |values: &[f64]| Arc::new(there.iter().map(|&at| values[at]).collect::<Vec<_>>());
+        let along = Along {
+            axis: of(&self.along.axis),
+            time: self.along.time.as_deref().map(|time| of(time)),
+            rate: self.along.rate,
+            first_row: None,
+        };
+        Ok(Self { along: Arc::new(along), values: of(&self.values) })
+    }
+
     pub fn cut(&self, extent: Extent) -> Result<Self, Reason> {
         Cutter::new(extent).cut(self)
     }
@@ -297,17 +322,52 @@ impl Samples {
     }
 }
 
-/// `left op right`, sample by sample.
+/// `left op right`, sample by sample; of a condition 1 where it holds and else 0.
 ///
 /// # Errors
 /// The signals have different samples, or a result is not finite: which sample, and why.
 pub fn arithmetic(operator: Operator, left: &Signal, right: &Signal) -> Result<Signal, Reason> {
+    let told = f64::from;
     match operator {
         Operator::Add => each_pair(left, right, |a, b| a + b),
         Operator::Subtract => each_pair(left, right, |a, b| a - b),
         Operator::Multiply => each_pair(left, right, |a, b| a * b),
-        _ => each_pair(left, right, |a, b| a / b),
+        Operator::Divide => each_pair(left, right, |a, b| a / b),
+        Operator::Less => each_pair(left, right, |a, b| told(a < b)),
+        Operator::LessEqual => each_pair(left, right, |a, b| told(a <= b)),
+        Operator::Greater => each_pair(left, right, |a, b| told(a > b)),
+        Operator::GreaterEqual => each_pair(left, right, |a, b| told(a >= b)),
+        Operator::And => each_pair(left, right, |a, b| a * b),
+        Operator::Or => each_pair(left, right, f64::max),
+        Operator::Is | Operator::IsNot => Err(Reason::Internal),
     }
+}
+
+/// For each sample the value of the first signal whose condition holds, else that of the signal
+/// behind them; not a number where there is none.
+///
+/// # Errors
+/// The signals have different samples.
+pub fn choose(values: &[&Signal], conditions: &[&Signal]) -> Result<Signal, Reason> {
+    let at = |signal: &Signal, sample: usize| match signal {
+        Signal::Constant(value) => *value,
+        Signal::Samples(samples) => samples.values[sample],
+    };
+    let sampled = values.iter().chain(conditions).filter_map(|signal| match signal {
+        Signal::Samples(samples) => Some(samples),
+        Signal::Constant(_) => None,
+    });
+    let mut sampled = sampled.cloned();
+    let first = sampled.next().ok_or(Reason::Internal)?;
+    if sampled.any(|other| !other.along_with(&first)) {
+        return Err(Reason::DifferentSampling);
+    }
+    let one = |sample: usize| {
+        let holds = conditions.iter().position(|condition| at(condition, sample) != 0.0);
+        let value = values.get(holds.unwrap_or(conditions.len()));
+        value.map_or(f64::NAN, |value| at(value, sample))
+    };
+    Ok(Signal::Samples(first.with((0..first.values.len()).map(one).collect())))
 }
 
 /// A function of one or two signals, sample by sample.
@@ -370,7 +430,7 @@ fn each_pair(
             finite(right, right.values.iter().map(|b| run(*a, *b)).collect())
         }
         (Signal::Samples(left), Signal::Samples(right)) => {
-            if !Arc::ptr_eq(&left.along, &right.along) && left.along.axis != right.along.axis {
+            if !left.along_with(right) {
                 return Err(Reason::DifferentSampling);
             }
             finite(

@@ -7,10 +7,10 @@ use indexmap::IndexMap;
 
 use super::memo::{Computed, Keys, Memo};
 use super::opened::Opened;
-use super::signal::{Cutter, Samples, Signal, apply, arithmetic, each, mapped};
+use super::signal::{Cutter, Samples, Signal, apply, arithmetic, choose, each, mapped};
 use crate::catalog::Reducer;
-use crate::check::evaluate::number;
-use crate::check::plan::{Plan, StepSpec};
+use crate::check::evaluate::{flag, number};
+use crate::check::plan::{Plan, StepSpec, Type};
 use crate::graph::{Graph, NodeId, Operation};
 use crate::metrics::percentile::percentiles;
 use crate::metrics::sampling::Traits;
@@ -239,7 +239,7 @@ impl State<'_> {
     fn asks(&self, id: NodeId) -> bool {
         matches!(
             self.graph.nodes[id].operation,
-            Operation::Step(_) | Operation::Window(_) | Operation::OverAxis(_)
+            Operation::Step(_) | Operation::Window(_) | Operation::OverAxis(_) | Operation::Present
         )
     }
 
@@ -386,6 +386,9 @@ impl State<'_> {
                 let along = Arc::clone(&self.opened.sampled.along);
                 Ok(Signal::Samples(Samples { along, values: Arc::clone(values) }))
             }
+            Operation::Constant(expr) if expr.ty == Type::Flag => {
+                Ok(Signal::Constant(f64::from(flag(expr, self.known)?)))
+            }
             Operation::Constant(expr) => Ok(Signal::Constant(number(expr, self.known)?)),
             Operation::Level => {
                 let of = |(id, found): &(NodeId, NodeValue)| match found {
@@ -410,6 +413,14 @@ impl State<'_> {
             Operation::Select(conditions) => {
                 Ok(input(chosen(conditions, &node.inputs, self.known)?)?.clone())
             }
+            Operation::Choose(conditions) => {
+                let inputs: Result<Vec<_>, _> =
+                    node.inputs.iter().map(|&input| self.signal(input)).collect();
+                let inputs = inputs?;
+                let (values, conditions) = inputs.split_at(inputs.len() - conditions);
+                choose(values, conditions)
+            }
+            Operation::Present => Ok(Signal::Samples(self.samples(node.inputs[0])?.present()?)),
             Operation::OverAxis(operation) => Ok(Signal::Samples(
                 self.samples(node.inputs[0])?.over_axis(operation, self.known, self.extent)?,
             )),

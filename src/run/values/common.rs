@@ -7,13 +7,13 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use crate::catalog::Reducer;
-use crate::check::evaluate::{number, words};
-use crate::check::plan::{AxisOperation, Expr, Kind, Side};
+use crate::check::evaluate::{flag, number, words};
+use crate::check::plan::{AxisOperation, Expr, Kind, Side, Type};
 use crate::metrics::percentile::Method;
 use crate::metrics::resample::{self, Located};
 use crate::metrics::sampling::Traits;
 use crate::result::Reason;
-use crate::run::record::{Along, Samples, Signal, apply, arithmetic, each, mapped};
+use crate::run::record::{Along, Samples, Signal, apply, arithmetic, choose, each, mapped};
 use crate::run::sections::{Extent, Known};
 
 /// Where the samples of two records meet. It is the same for all signals of the two.
@@ -232,13 +232,17 @@ impl Both<'_> {
         of: &Expr,
     ) -> Result<(f64, usize), Reason> {
         let common = Common::of(self)?;
-        let samples = common.filled(self.signal(of, &common, method)?);
+        let mut samples = common.filled(self.signal(of, &common, method)?);
+        if of.may_miss_samples() {
+            samples = samples.present()?;
+        }
         Ok((number_of(reducer, &samples, method)?, samples.values.len()))
     }
 
     fn signal(&self, of: &Expr, common: &Common, method: Method) -> Result<Signal, Reason> {
         let inner = |signal: &Expr| self.signal(signal, common, method);
         match &of.kind {
+            _ if of.ty == Type::Flag => Ok(Signal::Constant(f64::from(flag(of, self.known)?))),
             Kind::Side(Side::Simulated) => {
                 Ok(Signal::Samples(common.measured.with(common.simulated.clone())))
             }
@@ -277,8 +281,16 @@ impl Both<'_> {
             Kind::Level(reducer, signal) => {
                 Ok(Signal::Constant(number_of(*reducer, &common.filled(inner(signal)?), method)?))
             }
+            Kind::Not(condition) => each(&inner(condition)?, |holds| 1.0 - holds),
+            Kind::Cases(arms, otherwise) if matches!(of.ty, Type::Samples { .. }) => {
+                let values = arms.iter().map(|(value, _)| value).chain(otherwise.as_deref());
+                let values = values.map(inner).collect::<Result<Vec<_>, _>>()?;
+                let conditions = arms.iter().map(|(_, condition)| inner(condition));
+                let conditions = conditions.collect::<Result<Vec<_>, _>>()?;
+                choose(&values.iter().collect::<Vec<_>>(), &conditions.iter().collect::<Vec<_>>())
+            }
             // The checker does not allow these here.
-            Kind::Channel { .. } | Kind::Filtered(..) | Kind::Cases(..) => Err(Reason::Internal),
+            Kind::Channel { .. } | Kind::Filtered(..) => Err(Reason::Internal),
             _ => Ok(Signal::Constant(number(of, self.known)?)),
         }
     }

@@ -9,8 +9,8 @@ use super::verdicts;
 use crate::check::evaluate::flag;
 use crate::check::plan::{Chosen, Evaluation, Pairing, Plan, Quantity, Records, Zone};
 use crate::result::{
-    Consequence, Figures, Finding, PairValue, QuantityResult, Reason, Reported, Verdict,
-    VerdictResult, ZoneResult,
+    Consequence, Figures, Finding, OUTCOME, PairValue, QuantityResult, Reason, Reported,
+    StatisticName, StatisticResult, Verdict, VerdictResult, ZoneResult,
 };
 use crate::run::data_rules::changed;
 use crate::run::describe::{reports, spreads};
@@ -25,6 +25,8 @@ pub struct Judged {
     pub verdict: Verdict,
     /// The overall verdict in the words of the protocol, if it states them.
     pub own_word: Option<String>,
+    /// Of several outcomes of the overall verdict the one that applies.
+    pub outcome: Option<String>,
     pub reasons: Vec<Reason>,
     /// Verdicts with a name.
     pub verdicts: Vec<VerdictResult>,
@@ -83,11 +85,12 @@ pub fn judge(
     let verdict = overall.outcome.overall();
     let own_word = rule.has_words().then(|| match verdict {
         Verdict::NotAssessable => verdict.in_words().to_string(),
-        _ => overall.outcome.word(&rule.words).to_string(),
+        _ => overall.word(&rule.words).to_string(),
     });
+    let outcome = overall.word.clone();
     let reported = reports::of_sections(plan, facts, used.iter().map(|(unit, _)| *unit));
     let reasons = overall.reasons;
-    Judged { verdict, own_word, reasons, verdicts, quantities, zones, reported }
+    Judged { verdict, own_word, outcome, reasons, verdicts, quantities, zones, reported }
 }
 
 /// One reason for all parameters that have no value.
@@ -183,6 +186,13 @@ fn zone_result(zone: &Zone, units: &[Unit]) -> ZoneResult {
     }
 }
 
+/// Of several outcomes of a quantity the word of the one that applies.
+fn outcome(quantity: &Quantity, statistics: &[StatisticResult]) -> Option<String> {
+    let name = StatisticName::from(OUTCOME.to_owned());
+    let of = statistics.iter().find(|one| !quantity.outcomes.is_empty() && one.name == name)?;
+    quantity.outcomes.get((of.value? as usize).checked_sub(1)?).cloned()
+}
+
 /// The result, and a reason for each limit that is not met.
 fn quantity_result(judging: &Judging<'_>, reason: Option<Reason>) -> (QuantityResult, Vec<Reason>) {
     let (quantity, Group { plan, members, .. }) = (judging.quantity, judging.rows);
@@ -237,6 +247,7 @@ fn quantity_result(judging: &Judging<'_>, reason: Option<Reason>) -> (QuantityRe
     };
     let values: Vec<PairValue> = members.iter().map(value).collect();
     let result = QuantityResult {
+        outcome: outcome(quantity, &statistics),
         id: quantity.id.clone(),
         title: quantity.title.clone(),
         symbol: quantity.symbol.clone(),

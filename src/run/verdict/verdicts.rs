@@ -21,6 +21,8 @@ pub struct Given<'a> {
 #[derive(Clone, Debug)]
 pub struct Decided {
     pub outcome: Outcome,
+    /// Of several outcomes in order the word of the one that applies.
+    pub word: Option<String>,
     pub reasons: Vec<Reason>,
 }
 
@@ -32,11 +34,20 @@ impl Default for Decided {
 
 impl Decided {
     fn not_assessable(reasons: Vec<Reason>) -> Self {
-        Self { outcome: Outcome::NotAssessable, reasons }
+        Self { outcome: Outcome::NotAssessable, word: None, reasons }
     }
 
     fn holds() -> Self {
-        Self { outcome: Outcome::Holds, reasons: Vec::new() }
+        Self { outcome: Outcome::Holds, word: None, reasons: Vec::new() }
+    }
+
+    fn fails(reasons: Vec<Reason>) -> Self {
+        Self { outcome: Outcome::DoesNotHold, word: None, reasons }
+    }
+
+    /// The outcome in words.
+    pub fn word<'w>(&'w self, words: &'w [String; 2]) -> &'w str {
+        self.word.as_deref().unwrap_or_else(|| self.outcome.word(words))
     }
 }
 
@@ -53,18 +64,45 @@ fn decide_one(plan: &Plan, given: &Given<'_>, at: usize, decided: &mut BTreeMap<
     if decided.contains_key(&at) {
         return;
     }
-    let found = match &plan.verdicts[at].decision {
+    let decision = &plan.verdicts[at].decision;
+    decision.verdicts().into_iter().for_each(|of| decide_one(plan, given, of, decided));
+    let found = by(plan, given, decision, decided);
+    decided.insert(at, found);
+}
+
+/// What a decision comes to, after the verdicts that it uses.
+fn by(
+    plan: &Plan,
+    given: &Given<'_>,
+    decision: &Decision,
+    decided: &BTreeMap<usize, Decided>,
+) -> Decided {
+    match decision {
         Decision::Limits { rule, quantities } => by_limits(plan, given, *rule, quantities),
-        Decision::Verdicts(over) => {
-            over.verdicts().into_iter().for_each(|of| decide_one(plan, given, of, decided));
-            by_verdicts(plan, over, decided)
-        }
+        Decision::Verdicts(over) => by_verdicts(plan, over, decided),
         Decision::Person(person) => Decided {
             outcome: Outcome::Open,
+            word: None,
             reasons: vec![Reason::ToBeJudged { person: person.clone() }],
         },
-    };
-    decided.insert(at, found);
+        Decision::Ordered(grades) => {
+            // Why the outcome is not a better one.
+            let mut reasons = Vec::new();
+            for grade in grades {
+                let found = grade.when.as_deref().map(|when| by(plan, given, when, decided));
+                match found.as_ref().map_or(Some(true), |found| found.outcome.holds()) {
+                    Some(false) => reasons = found.map_or(reasons, |found| found.reasons),
+                    None => return found.unwrap_or_default(),
+                    Some(true) => {
+                        let outcome =
+                            if grade.holds { Outcome::Holds } else { Outcome::DoesNotHold };
+                        return Decided { outcome, word: Some(grade.word.clone()), reasons };
+                    }
+                }
+            }
+            Decided::default()
+        }
+    }
 }
 
 /// The results of the verdicts with a name.
@@ -76,7 +114,7 @@ pub fn named(plan: &Plan, decided: &[Decided]) -> Vec<VerdictResult> {
             title: rule.title.clone(),
             overall: at == 0,
             outcome: found.outcome,
-            word: found.outcome.word(&rule.words).to_string(),
+            word: found.word(&rule.words).to_string(),
             words: rule.words.clone(),
             criterion: rule.criterion.clone(),
             reasons: found.reasons.clone(),
@@ -150,7 +188,7 @@ fn by_limits(plan: &Plan, given: &Given<'_>, rule: Rule, about: &[usize]) -> Dec
             reasons.insert(0, Reason::TooFewLimits { met: limits_holding, minimum });
         }
     }
-    Decided { outcome: Outcome::DoesNotHold, reasons }
+    Decided::fails(reasons)
 }
 
 /// Why no verdict can be given: it needs at least one limit that applies.
@@ -185,17 +223,14 @@ fn by_verdicts(plan: &Plan, over: &Over, decided: &BTreeMap<usize, Decided>) -> 
     let reason = |part: &Over| {
         let given = |at: usize| GivenVerdict {
             verdict: title(at).to_owned(),
-            word: decided[&at].outcome.word(&plan.verdicts[at].words).to_owned(),
+            word: decided[&at].word(&plan.verdicts[at].words).to_owned(),
         };
         Reason::VerdictsRequired {
             verdicts: part.verdicts().into_iter().map(given).collect(),
             required: in_words(part, plan),
         }
     };
-    Decided {
-        outcome: Outcome::DoesNotHold,
-        reasons: parts.into_iter().filter(|part| !holds(part, decided)).map(reason).collect(),
-    }
+    Decided::fails(parts.into_iter().filter(|part| !holds(part, decided)).map(reason).collect())
 }
 
 /// Whether the condition holds, for verdicts that are all given.

@@ -158,6 +158,8 @@ impl Writer<'_> {
             .fields
             .iter()
             .filter(|field| kind.key(&field.key.text).is_some_and(|key| key.sort == Sort::Phrase))
+            // A verdict names the quantities of a family as it is written.
+            .filter(|field| (kind.word, field.key.text.as_str()) != ("verdict", "of"))
         {
             let mut quotes = Quotes::default();
             let text = &field.value.text;

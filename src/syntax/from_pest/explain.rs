@@ -231,7 +231,6 @@ pub(super) fn joins(rule: Rule) -> bool {
             | kw_within
             | kw_over
             | kw_confidence
-            | kw_share
             | kw_percentile
             | kw_table
             | kw_weighted
@@ -263,9 +262,9 @@ fn in_words(rule: Rule) -> &'static str {
         range => "a range (`a to b`)",
         domain | coordinate => "what spans a domain (`a, b for each c`)",
         chain => "a filter chain",
-        step | steps | part => "a step",
+        step | steps | part | steps_inside | step_inside | part_inside => "a step",
         step_when | of_when | kw_when => "`when`",
-        part_item | phrase_word => "a word or a number",
+        part_item | phrase_word | item_inside | word_inside => "a word or a number",
         then => "`then`",
         limit => "a limit",
         statistic => "a statistic such as `mean` or `std`, or an estimate in parentheses",
@@ -292,11 +291,13 @@ fn in_words(rule: Rule) -> &'static str {
         for_groups => "`for each ...`",
         minimum => "a minimum",
         report => "an estimate such as `mean` or `total of length`",
-        share | kw_share => "`share where ...`",
+        share | counted => "`share where ...`",
         in_quotes => "a name in quotes",
         over | kw_over => "`over`",
         over_what => "a signal",
-        verdict => "the rule of a verdict",
+        verdict | verdict_rule => "the rule of a verdict",
+        outcome | outcome_of_verdict | outcome_word => "`good: holds when ...`",
+        outcome_holds | outcome_fails => "`holds` or `fails`",
         every_limit => "`every limit holds`",
         at_least_n => "`at least N quantities hold`",
         some_verdict | all_verdicts | one_verdict | named_verdict => "`some_verdict holds`",

@@ -15,8 +15,8 @@ use pest::iterators::Pair;
 
 use super::document::Text;
 use super::phrase::{
-    Alias, At, Domain, Limit, Minimum, Node, Number, OfPlaces, OverVerdicts, Phrase, Pick, Report,
-    Scope, Step, Verdict, normalised,
+    Alias, At, Domain, Limit, Minimum, Node, Number, OfPlaces, Outcome, OverVerdicts, Phrase, Pick,
+    Report, Scope, Step, Verdict, normalised,
 };
 use crate::problem::Problems;
 use tree::{cases, either, estimate, pick, step, sum};
@@ -168,7 +168,31 @@ fn scope(part: Parsed) -> Option<Scope> {
 }
 
 pub fn verdict(text: &Text, problems: &mut Problems) -> Option<Verdict> {
-    let inner = parsed(Rule::verdict, text, problems)?.next()?;
+    verdict_rule(parsed(Rule::verdict, text, problems)?.next()?)
+}
+
+/// An outcome of a quantity: `good: holds when mean <= 2`.
+pub fn outcome(text: &Text, problems: &mut Problems) -> Option<Outcome<Phrase>> {
+    outcome_when(parsed(Rule::outcome, text, problems)?, either)
+}
+
+/// An outcome of a verdict: `restricted: holds when at least 11 quantities hold`.
+pub fn outcome_of_verdict(text: &Text, problems: &mut Problems) -> Option<Outcome<Verdict>> {
+    outcome_when(parsed(Rule::outcome_of_verdict, text, problems)?, verdict_rule)
+}
+
+fn outcome_when<T>(mut inner: Parsed, when: fn(Parsed) -> Option<T>) -> Option<Outcome<T>> {
+    let word = inner.next()?;
+    let word = word.at(normalised(word.written().trim().trim_matches('"')));
+    let holds = inner.next()?.rule == Rule::outcome_holds;
+    let when = match inner.next() {
+        Some(rule) => Some(when(rule)?),
+        None => None,
+    };
+    Some(Outcome { word, holds, when })
+}
+
+fn verdict_rule(inner: Parsed) -> Option<Verdict> {
     match inner.rule {
         Rule::every_limit => return Some(Verdict::EveryLimit),
         Rule::some_verdict => return Some(Verdict::Over(over_verdicts(inner)?)),
@@ -352,7 +376,10 @@ mod tests {
                 let words: Vec<&str> = words.iter().map(|word| word.node.as_str()).collect();
                 format!("{}@{}", signal.node, words.join("."))
             }
-            Node::Through(inner, filter) => format!("{}>{}", shown(inner), filter.node),
+            Node::Through(inner, steps) => {
+                let words: Vec<String> = steps.iter().map(At::words).collect();
+                format!("{}>{}", shown(inner), words.join(";"))
+            }
             Node::Cases(arms, otherwise) => {
                 let arms: Vec<String> = arms
                     .iter()
@@ -392,6 +419,14 @@ mod tests {
             ),
             ("Y at side R + Y at side L", "(Add Y@side.R Y@side.L)"),
             ("(Y through LP20) / (Q through LP20)", "(Divide Y>LP20 Q>LP20)"),
+            (
+                "Y through LP20-Q through low-pass 10 Hz - 2",
+                "(Subtract (Subtract Y>LP20 Q>low-pass 10 Hz) 2)",
+            ),
+            (
+                "Y through (low-pass 10 Hz, order 4, then magnitude)",
+                "Y>low-pass 10 Hz, order 4;magnitude",
+            ),
             (
                 "250 m when zone is 1 and v <= 220 km/h, 500 m when zone is 1, otherwise 70 m",
                 "[250?(And (Is zone 1) (LessEqual v 61.1111111111)), 500?(Is zone 1); 70]",

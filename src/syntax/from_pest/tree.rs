@@ -1,7 +1,7 @@
 //! From the pairs of pest to the tree of a phrase.
 
 use super::{Parsed, Rule, keys};
-use crate::syntax::phrase::{At, Fit, Item, Node, Number, Operator, Phrase, Pick, Step};
+use crate::syntax::phrase::{At, Counted, Fit, Item, Node, Number, Operator, Phrase, Pick, Step};
 use crate::units::Unit;
 
 pub(super) fn pick(part: Parsed) -> Pick {
@@ -14,7 +14,9 @@ pub(super) fn step(mut part: Parsed) -> Option<At<Step>> {
     let mut step = Step { parts: Vec::new(), when: None };
     for mut inner in part.by_ref() {
         match inner.rule {
-            Rule::part => step.parts.push(inner.map(item).collect::<Option<Vec<_>>>()?),
+            Rule::part | Rule::part_inside => {
+                step.parts.push(inner.map(item).collect::<Option<Vec<_>>>()?)
+            }
             _ => step.when = Some(either(inner.next()?)?),
         }
     }
@@ -24,7 +26,7 @@ pub(super) fn step(mut part: Parsed) -> Option<At<Step>> {
 fn item(mut part: Parsed) -> Option<At<Item>> {
     let inner = part.next()?;
     Some(part.at(match inner.rule {
-        Rule::phrase_word => Item::Word(inner.written().to_string()),
+        Rule::phrase_word | Rule::word_inside => Item::Word(inner.written().to_string()),
         _ => Item::Value(value(inner)?),
     }))
 }
@@ -198,10 +200,25 @@ fn primary(mut part: Parsed) -> Option<Phrase> {
         let whole = phrase.to(&after.at(()), ());
         phrase = whole.with(match after.rule {
             Rule::over => Node::Over(Box::new(phrase), Box::new(primary(what)?)),
-            _ => Node::Through(Box::new(phrase), what.named()),
+            _ => Node::Through(Box::new(phrase), steps_inside(what)?),
         });
     }
     Some(phrase)
+}
+
+/// What a signal passes: a filter by its name, a step, or a chain.
+fn steps_inside(part: Parsed) -> Option<Vec<At<Step>>> {
+    match part.rule {
+        Rule::steps_inside => {
+            part.filter(|part| part.rule == Rule::step).map(step).collect::<Option<Vec<_>>>()
+        }
+        Rule::step_inside => Some(vec![step(part)?]),
+        _ => {
+            let word = part.at(Item::Word(part.written().to_string()));
+            let step = Step { parts: vec![vec![word]], when: None };
+            Some(vec![part.at(step)])
+        }
+    }
 }
 
 /// A primary without `through`, `over` and `weighted` behind it.
@@ -242,6 +259,7 @@ fn without_suffix(mut part: Parsed) -> Option<Phrase> {
             Node::Reduced(Box::new(reducer), Box::new(signed(inner.next()?)?))
         }
         Rule::share => {
+            let counted = counted(part.next()?.written());
             let (mut of_sections, mut condition, mut by) = (false, None, None);
             for part in part.by_ref() {
                 match part.rule {
@@ -250,7 +268,7 @@ fn without_suffix(mut part: Parsed) -> Option<Phrase> {
                     _ => condition = Some(Box::new(either(part)?)),
                 }
             }
-            let share = part.at(Node::Share { of_sections, condition: condition? });
+            let share = part.at(Node::Share { counted, of_sections, condition: condition? });
             return match by {
                 Some(by) => weighted(share, by),
                 None => Some(share),
@@ -264,6 +282,15 @@ fn without_suffix(mut part: Parsed) -> Option<Phrase> {
         _ => return value(part),
     };
     Some(part.at(node))
+}
+
+/// `share`, `count`, `longest run`, `longest run in time`.
+fn counted(words: &str) -> Counted {
+    match (words, words.split_whitespace().count()) {
+        ("count", _) => Counted::Count,
+        (_, 1) => Counted::Share,
+        (_, words) => Counted::LongestRun { in_time: words > 2 },
+    }
 }
 
 /// The estimate of a limit: the name of a statistic or estimate, a percentile, the end of an

@@ -6,6 +6,12 @@ use super::fields::{
 use super::{Key, Kind};
 
 /// A kind of block with a name, of which a protocol has any number.
+const VERDICT_OUTCOME: Key = many(phrase(
+    "outcome",
+    "In place of two words: outcomes in order, the best first. The first whose rule is met is that of the verdict; each says whether the verdict then `holds` or `fails`. The last has no rule.",
+    "validated with restriction: holds when at least 11 quantities hold",
+));
+
 const fn block(
     word: &'static str,
     group: &'static str,
@@ -289,6 +295,7 @@ pub const KINDS: &[Kind] = &[
         "A name for an expression: a condition, a factor, a table by zone or speed.",
         &[
             FOR_EACH,
+            phrase("of", "The names of its arguments, if it is a function.", "x, scale"),
             phrase(
                 "is",
                 "The expression.",
@@ -572,6 +579,11 @@ pub const KINDS: &[Kind] = &[
                 "A statistic or estimate without a limit, over all values or those of each group: it is printed and decides nothing.",
                 "maximum for each zone and wheelset",
             )),
+            many(phrase(
+                "outcome",
+                "Outcomes in order, the best first: the first whose condition on estimates is met is that of the quantity. Each says whether the quantity then `holds` or `fails`; the last has no condition.",
+                "good: holds when mean <= 2",
+            )),
             text(
                 "reported",
                 "Why it has no limit: it is reported, and decides nothing.",
@@ -632,6 +644,7 @@ pub const KINDS: &[Kind] = &[
                     "The number of section x signal pairs that a quantity needs, in all or in each group, unless the quantity states it.",
                     "24",
                 )),
+                VERDICT_OUTCOME,
                 phrase("standard deviation", "Divisor of the variance: `n-1` or `n`.", "n-1"),
                 phrase(
                     "independent",
@@ -658,6 +671,7 @@ pub const KINDS: &[Kind] = &[
                 "`when every limit holds`, `when at least N quantities hold`, or a rule over other verdicts.",
                 "when virtual_test is measured_test",
             ),
+            VERDICT_OUTCOME,
             text(
                 "judged by",
                 "In place of `holds`: the person who decides. The program gives no verdict; the report has lines for the judgement.",
