@@ -200,6 +200,7 @@ pub static LONGEST_RUN: ReducerEntry = ReducerEntry {
     about: "Longest stretch of samples one after the other that satisfy a condition.",
     gives: |_, axis| axis,
     run: |axis, x| sampling::longest_run(axis, x),
+    window: None,
 };
 
 impl Reducer {

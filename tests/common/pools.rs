@@ -5,7 +5,7 @@
 use fishplate::catalog::Statistic;
 use fishplate::result::study::Spread;
 use fishplate::result::{Direction, Scope};
-use fishplate::run::pool::{Pooled, PooledLimit, PooledQuantity, Section, Zone};
+use fishplate::run::pool::{Bounds, Pooled, PooledLimit, PooledQuantity, Section, Zone};
 use fishplate::study::case::Case;
 use fishplate::study::halves::subsets;
 
@@ -14,7 +14,12 @@ pub fn named(name: &str) -> Statistic {
 }
 
 pub fn limit(statistic: &str, bound: f64, ddof: usize, sections: usize) -> PooledLimit {
-    let bounds = if statistic == "each" { vec![bound; sections] } else { vec![bound] };
+    // As many as a section of these pools has values at most.
+    const VALUES: usize = 64;
+    let bounds = match statistic {
+        "each" => Bounds::Own(vec![vec![bound; VALUES]; sections]),
+        _ => Bounds::Common(bound),
+    };
     let statistic = named(statistic);
     PooledLimit {
         estimate: Pooled::Statistic(statistic, ddof),
