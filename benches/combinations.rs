@@ -12,7 +12,7 @@ use std::process::Command;
 use std::time::Instant;
 
 use fishplate::catalog::Statistic;
-use fishplate::run::pool::{Pool, Pooled, PooledLimit, PooledQuantity, Rule, Section, Zone};
+use fishplate::run::pool::{Bounds, Pool, Pooled, PooledLimit, PooledQuantity, Rule, Section, Zone};
 use fishplate::study::case::Case;
 use fishplate::study::enumerate::core;
 use fishplate::study::halves::Halves;
@@ -37,7 +37,7 @@ fn pool(counts: &[usize]) -> Pool {
         scope: fishplate::result::Scope::default(),
         positions: Vec::new(),
         inside: vec![true; all],
-        bounds: vec![bound],
+        bounds: Bounds::Common(bound),
     };
     let quantities = (0..QUANTITIES).map(|at| {
         let values = (0..all).map(|_| {

@@ -231,6 +231,18 @@ impl Reducer {
         }
     }
 
+    /// By which factor and offset the value follows where every sample `x` becomes
+    /// `factor * x + offset`, with a factor above zero; `None` where it must be computed again.
+    pub fn of_line(self, (factor, offset): (f64, f64)) -> Option<(f64, f64)> {
+        let Self::Named(entry) = self else { return Some((factor, offset)) };
+        match entry.name {
+            "median" | "mean" | "minimum" | "maximum" | "first" | "last" => Some((factor, offset)),
+            "std" | "range" | "slope" => Some((factor, 0.0)),
+            "rms" | "peak" if offset == 0.0 => Some((factor, 0.0)),
+            _ => None,
+        }
+    }
+
     pub fn in_words(self) -> String {
         match self {
             Self::Percentile(percent) => format!("p{percent}"),
@@ -345,5 +357,31 @@ impl Statistic {
             }
             Self::Named(entry) => entry.title.into(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_follows_a_straight_line_as_if_it_were_computed_again() {
+        let axis: Vec<f64> = (0..101).map(f64::from).collect();
+        let samples: Vec<f64> = axis.iter().map(|x| (0.3 * x).sin() + 0.01 * x - 0.4).collect();
+        let all = REDUCERS.iter().map(Reducer::Named).chain([Reducer::Percentile(99.85)]);
+        let mut followed = 0;
+        for reducer in all {
+            for (factor, offset) in [(1.3, 0.0), (0.7, 2.5), (2.0, -40.0)] {
+                let Some((by, plus)) = reducer.of_line((factor, offset)) else { continue };
+                let changed: Vec<f64> = samples.iter().map(|x| factor * x + offset).collect();
+                let of = |samples: &[f64]| {
+                    reducer.run(&axis, &Traits::of(samples), Method::Linear).expect("defined")
+                };
+                let (follows, again) = (by * of(&samples) + plus, of(&changed));
+                assert!((follows - again).abs() < 1e-12 * again.abs().max(1.0), "{reducer:?}");
+                followed += 1;
+            }
+        }
+        assert_eq!(followed, 3 * 10 + 2);
     }
 }

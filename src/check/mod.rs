@@ -428,6 +428,15 @@ impl Checker<'_> {
                 } else {
                     Vec::new()
                 },
+                range: match (&found.value, found.range) {
+                    (Ok(plan::Scalar::Number(value)), Some(ends)) => {
+                        let block = &names.parameter_blocks[name];
+                        block
+                            .field("range")
+                            .map(|range| plan::ParameterRange::new(*value, ends, &range.value.text))
+                    }
+                    _ => None,
+                },
             })
             .collect();
         Some(Plan {

@@ -21,6 +21,8 @@ pub struct ParameterDef {
     pub set_by: SetBy,
     /// The place and the positions selected, where the parameter is a selection.
     pub selects: Option<(String, Vec<String>)>,
+    /// Both ends of the range of a number, in SI.
+    pub range: Option<[f64; 2]>,
 }
 
 /// The positions of a place and their aliases.

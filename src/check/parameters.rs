@@ -70,6 +70,12 @@ impl Checker<'_> {
             }
         };
         let value_words = normalised(&source.text);
+        let range = match (block.field("range"), &ty) {
+            (Some(range), Type::Number(dimension)) => {
+                self.range_ends(name, *dimension, range, None)
+            }
+            _ => None,
+        };
         Some(ParameterDef {
             title,
             value: Ok(value),
@@ -78,6 +84,7 @@ impl Checker<'_> {
             default_words,
             set_by,
             selects,
+            range,
         })
     }
 
@@ -122,6 +129,7 @@ impl Checker<'_> {
             default_words: NOT_STATED.into(),
             set_by,
             selects: None,
+            range: None,
         })
     }
 

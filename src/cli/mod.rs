@@ -107,7 +107,7 @@ enum Command {
     )]
     Sections(sections::Sections),
     /// Study how the verdict depends on the sections, the synchronisation and the parameters of the
-    /// protocol.
+    /// protocol, and how far it is from another one.
     #[command(
         after_help = "Example:\n  fishplate study sections examples/coach --out target/coach-sections"
     )]

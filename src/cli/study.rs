@@ -1,4 +1,5 @@
-//! `study`: dependence of the verdict on sections, synchronisation and parameters.
+//! `study`: dependence of the verdict on sections, synchronisation and parameters, and how far it
+//! is from another one.
 
 use clap::Subcommand;
 
@@ -10,7 +11,7 @@ use crate::report::document::Fact;
 use crate::report::study as report;
 use crate::report::view::Opening;
 use crate::result::study as found;
-use crate::robustness::{self, Asked, Settings, Synchronisation, Vary};
+use crate::robustness::{self, Asked, Margins, Settings, Synchronisation, Vary};
 use crate::study;
 use crate::values::Joined;
 
@@ -57,6 +58,19 @@ pub enum Study {
         #[arg(long, value_name = "NAME=VALUES")]
         vary: Vec<String>,
     },
+    /// Find the smallest changes that flip the verdict: of gain, offset and place of the
+    /// measurement, of parameters, sections and limits; with declared uncertainties, the
+    /// probability that the verdict is the right one.
+    #[command(
+        after_help = "Example:\n  fishplate study margin examples/coach-good --out target/coach-margin"
+    )]
+    Margin {
+        #[command(flatten)]
+        common: Common,
+        /// Number of draws from the uncertainties that campaign.yaml declares; 0 for none.
+        #[arg(long, default_value_t = robustness::DRAWS)]
+        draws: usize,
+    },
 }
 
 #[derive(Debug, Args)]
@@ -101,7 +115,8 @@ impl Study {
         let common = match &self {
             Self::Sections { common }
             | Self::Sync { common, .. }
-            | Self::Parameters { common, .. } => common,
+            | Self::Parameters { common, .. }
+            | Self::Margin { common, .. } => common,
         };
         start_jobs(common.jobs)?;
         let mut problems = common.wrong();
@@ -164,6 +179,7 @@ impl Study {
     fn asked(&self, problems: &mut Problems) -> Option<Asked> {
         match self {
             Self::Sections { .. } => Some(Asked::Sections),
+            Self::Margin { draws, .. } => Some(Asked::Margin(Margins { draws: *draws })),
             Self::Sync { offsets, correct, farthest, .. } => {
                 let (farthest, correct) = (*farthest, *correct);
                 if !(farthest > 0.0 && farthest.is_finite()) {

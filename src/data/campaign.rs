@@ -11,6 +11,7 @@ mod members;
 mod opening;
 mod records;
 mod runs;
+mod uncertainty;
 
 use std::path::Path;
 use std::sync::Arc;
@@ -23,6 +24,7 @@ pub use members::{RecordKind, WhichRecord};
 pub use opening::{Changed, ReadFile};
 pub use records::OFFSET;
 pub use runs::{OnDrift, RUN_COLUMN, RUNS, Run, RunFact, RunStretch};
+pub use uncertainty::{Size, UNCERTAINTY, Uncertainty};
 
 pub use super::folder::Memory;
 use super::folder::{Folder, check_file_name};
@@ -69,6 +71,8 @@ pub struct Campaign {
     pub parameters: Vec<Parameter>,
     /// Values of the protocol that were confirmed.
     pub confirmed: Vec<Confirmed>,
+    /// Of the channels.
+    pub uncertainties: Vec<Uncertainty>,
     /// Contents of the block `report`.
     pub report: Vec<Stated>,
     /// Name or path of the default protocol.
@@ -206,6 +210,9 @@ impl Campaign {
             runs::check_column(table, &runs, problems);
         }
         check_edited(&layout.edited, layout.origin.as_ref(), problems);
+        let (facts, uncertainties) =
+            (facts::facts(&tree), layout.uncertainties.unwrap_or_default());
+        uncertainty::check_tolerances(&uncertainties, &facts, problems);
         let name = layout.name.map(|name| name.value).unwrap_or_default();
         let mut vehicles = layout.vehicles.unwrap_or_default();
         if vehicles.is_empty() {
@@ -218,9 +225,10 @@ impl Campaign {
             short_name: short_name
                 .unwrap_or_else(|| Spanned::new(name.clone(), tree.span_or_start("name"))),
             name,
-            facts: facts::facts(&tree),
+            facts,
             parameters: layout.parameters.unwrap_or_default(),
             confirmed: layout.confirmed.unwrap_or_default(),
+            uncertainties,
             report: report.unwrap_or_default().0,
             protocol: layout.protocol,
             origin: layout.origin,

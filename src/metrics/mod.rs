@@ -15,6 +15,7 @@
 //! | [`cluster`] | values by site | bounds of any statistic: bootstrap over sites, closed forms |
 //! | [`reduction`] | groups of members and their scatter | fewer members with nearly the same scatter |
 //! | [`regression`] | values and regressors | least squares, bounds at a point |
+//! | [`normal`] | probability | quantiles of the normal distribution |
 //! | [`student`] | probability | quantiles of Student's t |
 //! | [`sampling`] | values | signs of recording faults: held, saturated, quantised, spikes, gaps |
 //! | [`spectrum`] | values | single lines: interference |
@@ -44,6 +45,7 @@ pub mod hysteresis;
 mod incomplete_beta;
 pub mod interval;
 pub mod moments;
+pub mod normal;
 pub mod pair;
 pub mod percentile;
 pub mod random;

@@ -5,6 +5,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use crate::result::comparison::{Comparison, Sensitivity};
+use crate::result::margin::MarginStudy;
 use crate::result::study::{
     AtOffset, ParameterStudy, QuantitySpread, SelectionStudy, Study, StudyResult, SyncStudy,
 };
@@ -259,6 +260,7 @@ pub fn study(study: &Study) -> Result<Vec<File>, csv::Error> {
         StudyResult::Sections(found) => of_selections(found),
         StudyResult::Sync(found) => of_offsets(found),
         StudyResult::Parameters(found) => of_parameters(found),
+        StudyResult::Margin(found) => of_margin(found),
     }
 }
 
@@ -354,6 +356,36 @@ fn of_parameters(found: &ParameterStudy) -> Result<Vec<File>, csv::Error> {
             statistics,
         )?,
     ])
+}
+
+fn of_margin(found: &MarginStudy) -> Result<Vec<File>, csv::Error> {
+    let margins = found.margin.iter().map(|of| {
+        let reason = of.reason.as_ref().map(|reason| reason.text());
+        let more = json!({"flips_with": of.flips_with.join(" "), "columns": of.columns.join(" "), "reason": reason});
+        Entry { of, more }
+    });
+    let mut files = vec![table(
+        "margin",
+        "change, of, low, high, unit, exact, verdict below = verdict_low, verdict above = verdict_high, searched from = searched/from, searched to = searched/to, step = searched/step, columns, as it is, flips with, tried, reason",
+        margins,
+    )?];
+    if let Some(probability) = &found.probability {
+        let drawn = probability
+            .channels
+            .iter()
+            .map(|of| Entry { of, more: json!({"columns": of.columns.join(" ")}) });
+        files.push(table(
+            "uncertainties",
+            "channel, of, standard, unit, correlated, columns",
+            drawn,
+        )?);
+        files.push(table(
+            "risks",
+            "quantity, statistic, scope, unit, value, limit, standard uncertainty, risk of, risk, guard band, within guard band",
+            &probability.limits,
+        )?);
+    }
+    Ok(files)
 }
 
 /// The tables of a comparison.

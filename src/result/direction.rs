@@ -45,4 +45,13 @@ impl Direction {
         };
         share.is_finite().then_some(share)
     }
+
+    /// How far a value is from its limit, in their unit; below zero where it does not meet it.
+    pub fn distance(self, value: f64, limit: f64) -> f64 {
+        match self {
+            Self::Magnitude => limit - value.abs(),
+            Self::AtMost => limit - value,
+            Self::AtLeast => value - limit,
+        }
+    }
 }

@@ -12,6 +12,7 @@ pub mod domain;
 pub mod finding;
 pub mod found;
 mod kind;
+pub mod margin;
 pub mod origin;
 mod pair;
 mod parts;

@@ -79,6 +79,10 @@ pub enum Remark {
         column: String,
         offsets: Vec<SectionOffset>,
     },
+    /// An uncertainty of a channel that the protocol does not read.
+    UncertaintyNotUsed {
+        channel: String,
+    },
     /// A check that a section does not meet.
     OfSection {
         section: String,

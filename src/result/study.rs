@@ -5,6 +5,7 @@ use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize, Serializer};
 
+use super::margin::MarginStudy;
 use super::{
     CampaignInfo, FORMAT, ProtocolInfo, Reason, Remark, Scope, StatisticName, THIS, UnusedSection,
     Verdict, told,
@@ -33,6 +34,7 @@ pub enum Kind {
     Sections,
     Sync,
     Parameters,
+    Margin,
 }
 
 impl Study {
@@ -46,6 +48,7 @@ impl Study {
             StudyResult::Sections(_) => Kind::Sections,
             StudyResult::Sync(_) => Kind::Sync,
             StudyResult::Parameters(_) => Kind::Parameters,
+            StudyResult::Margin(_) => Kind::Margin,
         };
         Self { fishplate: THIS.into(), format: FORMAT, kind, protocol, campaign, found, notes }
     }
@@ -59,6 +62,7 @@ pub enum StudyResult {
     Sections(SelectionStudy),
     Sync(SyncStudy),
     Parameters(ParameterStudy),
+    Margin(MarginStudy),
 }
 
 /// All selections of sections, or a random sample of them.

@@ -2,6 +2,7 @@
 //!
 //! Joins the stages as `certify` does: `run` evaluates records, `study` evaluates selections.
 
+mod margin;
 mod parameters;
 mod rule;
 mod scale;
@@ -17,6 +18,7 @@ use crate::run::{Evaluated, Progress, Shifts, evaluate};
 use crate::study::case::Case;
 use crate::study::{self, reduced, selections};
 
+pub use margin::{DRAWS, Margins, margin};
 pub use parameters::{Vary, all_choices, parameters};
 pub use synchronisation::{Synchronisation, synchronisation};
 
@@ -37,6 +39,7 @@ pub enum Asked {
     Sync(Synchronisation),
     /// Without any, every parameter with a choice of words is varied.
     Parameters(Vec<Vary>),
+    Margin(Margins),
 }
 
 impl Asked {
@@ -47,8 +50,11 @@ impl Asked {
     /// each section and signal.
     pub fn ready(&self, opened: &Opened) -> Result<usize, Problems> {
         let (compiled, campaigns) = (&opened.compiled, opened.campaigns());
-        countable(compiled)?;
+        if !matches!(self, Self::Margin(_)) {
+            countable(compiled)?;
+        }
         match self {
+            Self::Margin(_) => Ok(campaigns.sections() + compiled.plan.parameters.len()),
             Self::Sections | Self::Sync(_) => {
                 campaigns.one_of_each()?;
                 Ok(campaigns.sections())
@@ -63,7 +69,7 @@ impl Asked {
         match self {
             Self::Parameters(vary) if vary.is_empty() => all_choices(&compiled.plan),
             Self::Parameters(vary) => vary.clone(),
-            Self::Sections | Self::Sync(_) => Vec::new(),
+            Self::Sections | Self::Sync(_) | Self::Margin(_) => Vec::new(),
         }
     }
 
@@ -80,6 +86,9 @@ impl Asked {
         match self {
             Self::Sections => sections(compiled, campaigns, settings, progress),
             Self::Sync(asked) => synchronisation(compiled, campaigns, settings, asked, progress),
+            Self::Margin(asked) => {
+                margin(compiled, campaigns, overrides, settings, *asked, progress)
+            }
             Self::Parameters(_) => {
                 parameters(compiled, campaigns, overrides, settings, &self.vary(compiled), progress)
             }

@@ -183,7 +183,8 @@ impl<'a> Variable<'a> {
     }
 }
 
-fn with(
+/// The protocol with another value of a parameter.
+pub fn with(
     family: Family,
     overrides: &Overrides,
     name: &str,

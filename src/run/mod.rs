@@ -31,14 +31,16 @@ mod values;
 mod verdict;
 
 pub use campaign::{
-    Outcome, Reduced, Settings, evaluate, evaluated, judge, reduce, run, several, single,
+    Outcome, Reduced, Settings, evaluate, evaluated, hold, judge, reduce, run, several, single,
 };
 pub use check_data::check_data;
 pub use data_rules::consequence::consequence;
 pub use describe::traces::{Kept, Signals};
 pub use limit::{keep, pool};
 pub use record::{Counts, file_hash, trial};
+pub use record::{Line, Lines};
+pub use reduce::held::{Change, Holding};
 pub use reduce::{Numbered, Progress, Shard};
 pub use sections::{Basis, Facts, Unit, scalar};
 pub use values::{Offset, Print, Row, SectionValues, Shifts};
-pub use verdict::{Evaluated, Judged, replay};
+pub use verdict::{Evaluated, Judged, LimitChange, limit_changes, replay};

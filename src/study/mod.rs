@@ -48,7 +48,7 @@ pub mod verdicts;
 mod window;
 
 use crate::result::Remark;
-use crate::result::study::{Counted, SelectionStudy, Stratum};
+use crate::result::study::{Counted, Removal, SelectionStudy, Stratum};
 use case::Case;
 use fails::Fails;
 pub use reduce::reduced;
@@ -79,6 +79,11 @@ impl Settings {
         case.combinations() <= self.most
             && case.measures().all(|(_, measure)| measure.is_countable(case))
     }
+}
+
+/// The smallest sets of sections that change the verdict on all sections.
+pub fn smallest_removal(case: &Case) -> Removal {
+    removal::smallest(case, case.judge(&case.usable()).0)
 }
 
 /// Evaluates the selections of a case, and the smallest sets of sections that change the verdict.

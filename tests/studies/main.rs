@@ -2,11 +2,14 @@
 
 #[path = "../common"]
 mod common {
+    pub mod campaign;
     pub mod pools;
+    pub mod program;
     pub mod tools;
 }
 
 mod compare;
+mod margin;
 mod study;
 mod study_command;
 mod study_flips;

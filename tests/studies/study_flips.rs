@@ -4,7 +4,7 @@
 use fishplate::catalog::Statistic;
 use fishplate::metrics::random::SplitMix64;
 use fishplate::result::{Direction, Scope, Verdict};
-use fishplate::run::pool::{Pool, Pooled, PooledLimit, PooledQuantity, Rule, Section, Zone};
+use fishplate::run::pool::{Bounds, Pool, Pooled, PooledLimit, PooledQuantity, Rule, Section, Zone};
 use fishplate::study::case::Case;
 use fishplate::study::flips::{Marked, flips};
 use fishplate::study::random::{Random, draw};
@@ -28,7 +28,7 @@ fn case(seed: u64, rule: Rule, unused: &[usize]) -> Case {
         scope: Scope::default(),
         positions: Vec::new(),
         inside: vec![true; all],
-        bounds: vec![bound],
+        bounds: Bounds::Common(bound),
     };
     let quantities = (0..4).map(|at| PooledQuantity {
         id: format!("q{at}"),

@@ -118,6 +118,33 @@ pub struct Parameter {
     pub unconfirmed: Option<String>,
     /// The words of a choice; empty otherwise.
     pub choices: Vec<String>,
+    /// Of a number with a range.
+    pub range: Option<ParameterRange>,
+}
+
+/// A number between the ends of its range, in the unit in which the range is written.
+#[derive(Clone, Debug)]
+pub struct ParameterRange {
+    pub value: f64,
+    pub low: f64,
+    pub high: f64,
+    /// As written; `-` of a number without a unit.
+    pub unit: String,
+    /// The number and both ends are whole: it is a count.
+    pub whole: bool,
+}
+
+impl ParameterRange {
+    /// From the number and both ends in SI, and the range as written: `5 Hz to 60 Hz`.
+    pub fn new(si: f64, ends: [f64; 2], written: &str) -> Self {
+        let last = written.rsplit(" to ").next().unwrap_or_default();
+        let unit = last.trim().split_once(' ').map_or("-", |(_, unit)| unit.trim());
+        let known = Unit::parse(unit).ok();
+        let shown = |si: f64| known.as_ref().map_or(si, |unit| unit.from_si(si));
+        let (value, low, high) = (shown(si), shown(ends[0]), shown(ends[1]));
+        let whole = unit == "-" && [value, low, high].iter().all(|number| number.fract() == 0.0);
+        Self { value, low, high, unit: unit.to_owned(), whole }
+    }
 }
 
 /// Who sets a parameter.

@@ -4,6 +4,7 @@ use super::confirmed::Confirmed;
 use super::members::{RecordFolder, record_folders};
 use super::opening::{Opening, Reader};
 use super::runs::{Run, runs};
+use super::uncertainty::{Uncertainty, uncertainties};
 use super::{Parameter, VehicleState};
 use crate::data::{identification::at_the_margin, origin::Origin, table::Table};
 use crate::problem::{error, problem};
@@ -32,6 +33,8 @@ fields! {
         "protocol" protocol: Option<Spanned<String>>,
         "parameters" parameters (parameters): Option<Vec<Parameter>>,
         "confirmed" confirmed: Option<Vec<Confirmed>>,
+        /// Of the channels.
+        "uncertainty" uncertainties (uncertainties): Option<Vec<Uncertainty>>,
         "origin" origin (origin): Option<Origin>,
         /// Records that were changed after an import.
         "edited" edited: Vec<Edited>,

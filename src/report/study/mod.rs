@@ -1,6 +1,7 @@
 //! A study as a document: chapters of text, tables and figures, printed as PDF and HTML from the
 //! same data.
 
+pub mod margin;
 mod parameters;
 mod sections;
 mod sync;
@@ -20,6 +21,7 @@ fn subject(study: &Study) -> &'static str {
         StudyResult::Sections(_) => "Selection of sections",
         StudyResult::Sync(_) => "Synchronisation",
         StudyResult::Parameters(_) => "Parameters of the protocol",
+        StudyResult::Margin(_) => "Margin of the verdict",
     }
 }
 
@@ -35,6 +37,7 @@ pub fn opening(study: &Study) -> Opening {
         StudyResult::Sections(found) => sections::opening(found, words),
         StudyResult::Sync(found) => sync::opening(found, words),
         StudyResult::Parameters(found) => parameters::opening(found, words),
+        StudyResult::Margin(found) => margin::opening(found, words),
     }
 }
 
@@ -45,6 +48,7 @@ pub fn document(study: &Study) -> Document {
         StudyResult::Sections(found) => sections::chapters(found, words),
         StudyResult::Sync(found) => sync::chapters(found, words),
         StudyResult::Parameters(found) => parameters::chapters(found, words),
+        StudyResult::Margin(found) => margin::chapters(found, words),
     };
     if !study.notes.is_empty() {
         let notes = study.notes.iter().map(|note| note.text().to_string());
@@ -115,6 +119,7 @@ pub fn figures(study: &Study) -> Vec<(String, String)> {
             drawn
         }
         StudyResult::Parameters(found) => vec![("choices".into(), figure::choices(found, words))],
+        StudyResult::Margin(found) => vec![("margins".into(), figure::margins(found, words))],
     }
 }
 

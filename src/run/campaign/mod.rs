@@ -16,6 +16,7 @@ use crate::run::data_rules::causes;
 use crate::run::describe::traces::{self, Kept, Signals};
 use crate::run::describe::{domain, not_asked, told};
 use crate::run::estimate::{extrapolation, used};
+use crate::run::reduce::held::{self, Holding};
 use crate::run::reduce::{Numbered, Prepared, Progress, Shard};
 use crate::run::sections::{Basis, units};
 use crate::run::values::{SectionValues, Shifts};
@@ -181,4 +182,25 @@ pub fn evaluate<'a>(
     let mut all: Vec<Evaluated> = others.map(|shift| first.in_trial(plan, at(shift))).collect();
     all.insert(unmoved, first);
     Ok(all)
+}
+
+/// Evaluates every section, and then again as `then` asks, with the measured records in memory.
+/// `moves`: whether they are moved along the axis too.
+///
+/// # Errors
+/// As [`run`]; `records-not-held`: a record that was read before cannot be read now.
+pub fn hold<T>(
+    plan: &Plan,
+    graph: &Graph,
+    campaigns: Campaigns<'_>,
+    moves: bool,
+    progress: Progress<'_>,
+    then: impl FnOnce(&Holding<'_>) -> T,
+) -> Result<(Evaluated, T), Problems> {
+    let prepared = Prepared::new(plan, graph, campaigns)?;
+    let sections = prepared.sections(Shard::WHOLE, progress);
+    let base = evaluated(plan, &prepared.basis, sections)?;
+    let done = held::hold(&prepared, &base, moves, then)
+        .map_err(|reason| Problem::error("records-not-held", reason.text()))?;
+    Ok((base, done))
 }

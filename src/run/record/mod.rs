@@ -9,9 +9,11 @@
 //! | `section_records` | the records of a section that several protocols share |
 //! | `state` | the nodes of the graph, level by level |
 //! | `stretch` | records that neighbouring sections share |
+//! | `calibrate` | the values of nodes with channels that are calibrated otherwise |
 //! | `evaluate` | the values of nodes, also with the record moved along its axis |
 //! | `work` | the reading of a record for its nodes |
 
+mod calibrate;
 mod evaluate;
 mod memo;
 mod opened;
@@ -22,6 +24,7 @@ mod stretch;
 pub mod trial;
 mod work;
 
+pub use calibrate::{Calibrated, Line, Lines};
 pub use evaluate::Held;
 pub use memo::{Keys, Numbers};
 pub use opened::{Fault, Opened, file_hash};

@@ -120,6 +120,15 @@ impl Sampled {
         Self::new(plan, kind, columns, first_row, |_| rate)
     }
 
+    /// The same with other values of some columns.
+    pub fn with_columns(&self, other: impl Fn(&str, &[f64]) -> Option<Vec<f64>>) -> Self {
+        let column = |(name, values): &(String, Arc<Vec<f64>>)| {
+            (name.clone(), other(name, values).map_or_else(|| Arc::clone(values), Arc::new))
+        };
+        let columns = Arc::new(self.columns.iter().map(column).collect());
+        Self { columns, ..self.clone() }
+    }
+
     pub fn column(&self, name: &str) -> Option<&Arc<Vec<f64>>> {
         self.columns.iter().find(|(known, _)| known == name).map(|(_, values)| values)
     }

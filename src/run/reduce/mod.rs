@@ -4,7 +4,9 @@
 //! |---|---|
 //! | `prepared` | what is opened and checked before any record is read; all sections, or a part of them |
 //! | `section` | the values of one section |
+//! | `held` | the same again, with the measurement changed and without reading it again |
 
+pub mod held;
 mod prepared;
 pub mod section;
 

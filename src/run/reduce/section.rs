@@ -13,7 +13,7 @@ use crate::run::record::{Fault, SectionWork, Work};
 use crate::run::sections::Unit;
 use crate::run::sections::columns::Present;
 use crate::run::values::{
-    Meetings, Original, RecordOfSide, SectionValues, Shifts, Sides, synchronisation,
+    Meetings, Original, RecordOfSide, Row, SectionValues, Shifts, Sides, synchronisation,
 };
 
 /// The values of a section, once for each shift.
@@ -28,10 +28,13 @@ pub fn of_section(work: &Work<'_>, unit: &Unit, shifts: &Shifts<'_>) -> Vec<Sect
 
 /// The positions of each quantity that are evaluated in a section; those of repeats only in a
 /// section that repeats another.
-type Active = Vec<Vec<bool>>;
+pub type Active = Vec<Vec<bool>>;
 
 /// And the quantities that are not, for want of something optional.
-fn active(section: &SectionWork<'_>) -> Result<(Active, Vec<(usize, Reason)>), Reason> {
+///
+/// # Errors
+/// A condition that cannot be decided, and why.
+pub fn active(section: &SectionWork<'_>) -> Result<(Active, Vec<(usize, Reason)>), Reason> {
     let SectionWork { work, unit, known } = section;
     let holds = |only: &Option<Expr>| only.as_ref().map_or(Ok(true), |only| flag(only, known));
     let quantities = work.plan.quantities.iter().zip(&work.present[unit.campaign]);
@@ -196,23 +199,35 @@ fn shifted(
 
 /// A row that cannot be computed affects its quantity only; the section is used for the others.
 fn quantities(sides: &Sides<'_>, active: &Active, values: &mut SectionValues) {
-    for (index, quantity) in sides.section.work.plan.quantities.iter().enumerate() {
-        let mut rows = Vec::new();
-        for at in (0..quantity.positions.len()).filter(|at| active[index][*at]) {
-            match sides.rows(index, at) {
-                Ok(found) => rows.extend(found),
-                // A record without finite samples where a quantity needs them is not used.
-                Err(reason) if reason.is_of_samples() => {
-                    values.fault.get_or_insert(reason);
-                }
-                Err(reason) => {
-                    let signal = &quantity.positions[at].name;
-                    values.impossible.push((index, reason.about(Subject::Signal, signal)));
-                }
-            }
-        }
+    for index in 0..sides.section.work.plan.quantities.len() {
+        let rows = rows(sides, active, index, values);
         values.rows.push(rows);
     }
+}
+
+/// The rows of one quantity; why it has none is kept in the values.
+pub fn rows(
+    sides: &Sides<'_>,
+    active: &Active,
+    index: usize,
+    values: &mut SectionValues,
+) -> Vec<Row> {
+    let quantity = &sides.section.work.plan.quantities[index];
+    let mut rows = Vec::new();
+    for at in (0..quantity.positions.len()).filter(|at| active[index][*at]) {
+        match sides.rows(index, at) {
+            Ok(found) => rows.extend(found),
+            // A record without finite samples where a quantity needs them is not used.
+            Err(reason) if reason.is_of_samples() => {
+                values.fault.get_or_insert(reason);
+            }
+            Err(reason) => {
+                let signal = &quantity.positions[at].name;
+                values.impossible.push((index, reason.about(Subject::Signal, signal)));
+            }
+        }
+    }
+    rows
 }
 
 /// Nodes whose values are needed from the records of one side.
@@ -240,7 +255,7 @@ fn wanted(
 }
 
 /// Adds the nodes that some quantities need at the positions that are evaluated.
-fn of_quantities(
+pub fn of_quantities(
     work: &Work<'_>,
     active: &Active,
     which: impl Fn(&Evaluation) -> bool,

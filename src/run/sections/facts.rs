@@ -298,7 +298,7 @@ pub struct Known<'a> {
     pub inputs: &'a [Result<f64, Reason>],
     pub sides: Option<(f64, f64)>,
     /// Of the statistics that a limit may refer to.
-    pub limits: Option<&'a dyn Limits>,
+    pub limits: Option<&'a (dyn Limits + Sync)>,
     /// See [`Values::rounding`].
     pub rounding: f64,
 }
