@@ -12,7 +12,9 @@ use std::process::Command;
 use std::time::Instant;
 
 use fishplate::catalog::Statistic;
-use fishplate::run::pool::{Bounds, Pool, Pooled, PooledLimit, PooledQuantity, Rule, Section, Zone};
+use fishplate::run::pool::{
+    Bounds, Pool, Pooled, PooledLimit, PooledQuantity, Rule, Section, Zone,
+};
 use fishplate::study::case::Case;
 use fishplate::study::enumerate::core;
 use fishplate::study::halves::Halves;

@@ -4,7 +4,9 @@
 use fishplate::catalog::Statistic;
 use fishplate::metrics::random::SplitMix64;
 use fishplate::result::{Direction, Scope, Verdict};
-use fishplate::run::pool::{Bounds, Pool, Pooled, PooledLimit, PooledQuantity, Rule, Section, Zone};
+use fishplate::run::pool::{
+    Bounds, Pool, Pooled, PooledLimit, PooledQuantity, Rule, Section, Zone,
+};
 use fishplate::study::case::Case;
 use fishplate::study::flips::{Marked, flips};
 use fishplate::study::random::{Random, draw};
