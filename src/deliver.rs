@@ -12,6 +12,7 @@ use crate::report::document::Document;
 use crate::report::pdf::Attachment;
 use crate::report::{self, attached, figure, html, tables, typst, view};
 use crate::result::comparison::Comparison;
+use crate::result::impact::Impact;
 use crate::result::study::Study;
 use crate::result::{self, Certification};
 
@@ -69,6 +70,16 @@ pub fn comparison(found: &Comparison, reports: Reports) -> Result<Files, Problem
     let (data, figures) = (report::comparison::document(found), report::comparison::figures(found));
     let name = ("comparison.json", "Every number of this comparison");
     files.extend(document(name, result::text(found), &data, &figures, reports)?);
+    Ok(files)
+}
+
+/// # Errors
+/// As [`certification`].
+pub fn impact(found: &Impact, reports: Reports) -> Result<Files, Problems> {
+    let mut files = in_folder(tables::impact(found).map_err(|error| error.to_string()))?;
+    let name = ("impact.json", "Every number of this report");
+    let data = report::impact::document(found);
+    files.extend(document(name, result::text(found), &data, &[], reports)?);
     Ok(files)
 }
 

@@ -27,6 +27,7 @@ pub mod effects;
 pub mod foreign;
 pub mod graph;
 pub mod hash;
+pub mod impact;
 pub mod import;
 pub mod init;
 pub mod library;

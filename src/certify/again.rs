@@ -33,13 +33,12 @@ pub fn again(
     if problems.any_error() {
         return None;
     }
-    let mut overrides = overrides(parameters);
-    overrides.confirmed = confirmed.to_vec();
-    compile(family, &overrides, problems)
+    compile(family, &overrides(parameters, confirmed), problems)
 }
 
-fn overrides(parameters: &[Setting]) -> Overrides {
+fn overrides(parameters: &[Setting], confirmed: &[Confirmation]) -> Overrides {
     let mut overrides = Overrides::new();
+    overrides.confirmed = confirmed.to_vec();
     for parameter in parameters {
         let set_by = match parameter.set_by.as_str() {
             "campaign" => SetBy::Campaign,
@@ -109,6 +108,11 @@ impl Rules {
                 .collect(),
             confirmed: confirmations(&compiled.plan.values.confirmed, &compiled.plan.edition),
         }
+    }
+
+    /// The parameters that were set, and the values that were confirmed.
+    pub fn overrides(&self) -> Overrides {
+        overrides(&self.parameters, &self.confirmed)
     }
 
     pub fn compiled(&self, problems: &mut Problems) -> Option<Compiled> {

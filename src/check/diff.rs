@@ -83,6 +83,33 @@ impl Change {
         Self { deviation: Deviation { rule, before, after }, edit }
     }
 
+    /// The block that is added, removed or changed.
+    pub fn block(&self) -> &Block {
+        match &self.edit {
+            Edit::Add { block, .. } | Edit::Remove(block) => block,
+            Edit::Title { of, .. } | Edit::Field { of, .. } => of,
+        }
+    }
+
+    /// A field before and after; `None` where a whole block or its title is changed.
+    pub fn field(&self) -> Option<[Option<&Field>; 2]> {
+        match &self.edit {
+            Edit::Field { old, new, .. } => Some([old.as_deref(), new.as_deref()]),
+            _ => None,
+        }
+    }
+
+    /// Whether no verdict can depend on it.
+    pub fn only_words(&self) -> bool {
+        match &self.edit {
+            Edit::Title { .. } => true,
+            Edit::Field { old, new, .. } => {
+                old.iter().chain(new).all(|field| PRINTED.contains(&&*field.key.text))
+            }
+            Edit::Add { .. } | Edit::Remove(_) => false,
+        }
+    }
+
     /// Whether the protocol asks for less with it: where this can be told from the two texts.
     pub fn relaxes(&self) -> bool {
         match &self.edit {
@@ -131,6 +158,27 @@ impl Change {
         }
         document
     }
+}
+
+/// Fields that are printed and decide nothing.
+pub const PRINTED: [&str; 11] = [
+    "edition",
+    "author",
+    "scope",
+    "leaves out",
+    "clause",
+    "source",
+    "note",
+    "unconfirmed",
+    "cause",
+    "symbol",
+    "report",
+];
+
+/// What is known of a field of the blocks of a kind.
+fn key_of(kind: &str, key: &str) -> Option<&'static keys::Key> {
+    let kind = keys::kind(kind)?;
+    [true, false].into_iter().find_map(|named| kind.with_name(named).key(key))
 }
 
 /// Blocks without which less is asked for.
@@ -268,6 +316,11 @@ fn many(block: &Block, olds: &[&Field], news: &[&Field], found: &mut Vec<Change>
     }
 }
 
+/// The name of a rule in differences: `quantity Y_max, limit std`.
+pub fn rule_of(block: &Block, field: &Field) -> String {
+    format!("{}, {}", head(block), rule(field))
+}
+
 fn rule(field: &Field) -> String {
     format!("{} {}", field.key.text, statistic(field)).trim().to_string()
 }
@@ -319,10 +372,7 @@ fn alike<T: PartialEq>(a: &Text, b: &Text, read: fn(&Text, &mut Problems) -> Opt
 
 /// Whether two values of a field mean the same; not so for prose and for text that cannot be parsed.
 fn same_meaning(kind: &str, key: &str, a: &Text, b: &Text) -> bool {
-    let key = keys::kind(kind).and_then(|kind| {
-        [true, false].into_iter().find_map(|named| kind.with_name(named).key(key))
-    });
-    let Some(key) = key.filter(|key| key.sort == Sort::Phrase) else { return false };
+    let Some(key) = key_of(kind, key).filter(|key| key.sort == Sort::Phrase) else { return false };
     match key.word {
         "over" => alike(a, b, from_pest::domain),
         "limit" if kind == "quantity" => alike(a, b, from_pest::limit),

@@ -7,6 +7,7 @@ mod convert_records;
 mod diagnose;
 mod effects;
 mod explain;
+mod impact;
 mod import;
 mod init;
 mod inputs;
@@ -121,6 +122,12 @@ enum Command {
         after_help = "Example:\n  fishplate compare examples/coach --protocol en14363-2016-annex-t --protocol sprague-geers --out target/coach-compared"
     )]
     Compare(compare::Compare),
+    /// Replay an archive of campaigns under the old and the new text of a protocol: which verdicts
+    /// differ, which changed rules suffice for it, and how close the others came.
+    #[command(
+        after_help = "Examples:\n  fishplate impact en14363-2016-annex-t en14363-2016-annex-t-strict-acceleration --over examples/coach examples/coach-good --out target/impact\n  fishplate reduce examples/coach --out target/coach-values.parquet\n  fishplate impact en14363-2016-annex-t my-proposal.fp --over target/coach-values.parquet --out target/impact"
+    )]
+    Impact(impact::Impact),
     /// Simulate one section or a whole campaign, with the reference vehicle model or another
     /// simulator; effects can be added.
     #[command(
@@ -283,6 +290,7 @@ pub fn run_with(words: impl IntoIterator<Item = OsString>) -> Exit {
         Command::Sections(sections) => sections.run(&console),
         Command::Study { study } => study.run(&console),
         Command::Compare(compare) => compare.run(&console),
+        Command::Impact(impact) => impact.run(&console),
         Command::Simulate(simulate) => simulate.run(&console),
         Command::Diagnose(diagnose) => diagnose.run(&console),
         Command::Import(import) => import.run(&console),

@@ -115,6 +115,12 @@ impl Judge {
 
 /// Opens files of values and puts them together.
 pub fn joined(paths: &[PathBuf], problems: &mut Problems) -> Option<Joined> {
+    let files = opened(paths, problems)?;
+    values::join(files, problems)
+}
+
+/// Opens files of values.
+pub fn opened(paths: &[PathBuf], problems: &mut Problems) -> Option<Vec<values::File>> {
     let in_folder = |path: &PathBuf, problem: Problem| match disk::is_folder(path) {
         Ok(true) => {
             problem.help(format!("name the files in it: `{}`", path.join("*.parquet").display()))
@@ -124,5 +130,5 @@ pub fn joined(paths: &[PathBuf], problems: &mut Problems) -> Option<Joined> {
     let opened =
         paths.iter().map(|path| values::open(path).map_err(|problem| in_folder(path, problem)));
     let files = opened.filter_map(|file| problems.value(file)).collect();
-    if problems.any_error() { None } else { values::join(files, problems) }
+    (!problems.any_error()).then_some(files)
 }

@@ -7,6 +7,7 @@ use super::output::{Console, Done};
 use crate::result::blind::Blind;
 use crate::result::comparison::Comparison;
 use crate::result::diagnosis::Diagnosis;
+use crate::result::impact::Impact;
 use crate::result::study::Study;
 use crate::result::{self, Certification};
 use crate::syntax;
@@ -22,6 +23,8 @@ pub enum Of {
     Study,
     /// comparison.json
     Comparison,
+    /// impact.json
+    Impact,
     /// diagnosis.json
     Diagnosis,
     /// blind.json
@@ -35,6 +38,7 @@ pub fn schema(of: Of) -> serde_json::Value {
         Of::Results => of_file::<Certification>(),
         Of::Study => of_file::<Study>(),
         Of::Comparison => of_file::<Comparison>(),
+        Of::Impact => of_file::<Impact>(),
         Of::Diagnosis => of_file::<Diagnosis>(),
         Of::Blind => of_file::<Blind>(),
     }

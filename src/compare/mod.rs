@@ -67,7 +67,8 @@ use crate::run::trial::{Disturbance, Kind, Trial};
 use crate::run::{Counts, Progress};
 use subject::{Subject, WithProtocols};
 
-pub use rules::ALL;
+pub use rules::{ALL, related};
+pub use subject::{campaigns, of_protocol, unknown_parameters};
 
 /// Settings of a comparison.
 #[derive(Clone, Debug)]
@@ -100,11 +101,21 @@ fn trials(sizes: &[f64]) -> Vec<Trial> {
 /// Gives a campaign the sections that the first protocol which looks for sections finds in its
 /// runs: all protocols are compared on the same.
 fn with_found_sections(opened: WithProtocols, problems: &mut Problems) -> Option<WithProtocols> {
-    let applies = |one: &&Compiled| find::applies(&one.plan, &opened.campaign);
-    let Some(first) = opened.compiled.protocols.iter().find(applies) else { return Some(opened) };
-    let found = find::find(&first.plan, &first.graph, &opened.campaign, &|_| {});
-    let found = found.map_err(|told| problems.add(told.0)).ok()?;
-    Some(WithProtocols { campaign: found.campaign, ..opened })
+    let WithProtocols { name, campaign, compiled } = opened;
+    let campaign = on_found_sections(&compiled.protocols, campaign, problems)?;
+    Some(WithProtocols { name, campaign, compiled })
+}
+
+/// A campaign with the sections that the first protocol which looks for some finds in its runs.
+pub fn on_found_sections<'a>(
+    protocols: impl IntoIterator<Item = &'a Compiled>,
+    campaign: Campaign,
+    problems: &mut Problems,
+) -> Option<Campaign> {
+    let applies = |one: &&Compiled| find::applies(&one.plan, &campaign);
+    let Some(first) = protocols.into_iter().find(applies) else { return Some(campaign) };
+    let found = find::find(&first.plan, &first.graph, &campaign, &|_| {});
+    found.map_err(|told| problems.add(told.0)).ok().map(|found| found.campaign)
 }
 
 /// A comparison, checked and compiled.
@@ -137,7 +148,7 @@ impl Prepared {
             return None;
         }
         let (changes, unrelated) = match protocols.as_slice() {
-            [before, after] if rules::related(before, after) => {
+            [before, after] if related(&before.family, &after.family) => {
                 (rules::changes(before, after), None)
             }
             [before, after] => (Vec::new(), Some(rules::changes(before, after).len())),
@@ -214,18 +225,21 @@ impl Prepared {
 
     fn compared(&self) -> Vec<Compared> {
         let compiled = self.compiled();
-        let one = |(compiled, subject): (&Compiled, &Subject)| {
-            let info = protocol_info(compiled);
-            Compared {
-                name: subject.name.clone(),
-                title: info.title,
-                edition: info.edition,
-                sha256: info.sha256,
-                metrics: metric::names(&compiled.plan),
-                criterion: info.verdict_rule,
-                files: info.files,
-            }
-        };
+        let one = |(compiled, subject): (&Compiled, &Subject)| compared(&subject.name, compiled);
         compiled.iter().zip(&self.protocols).map(one).collect()
+    }
+}
+
+/// A protocol with the name it has in a comparison.
+pub fn compared(name: &str, compiled: &Compiled) -> Compared {
+    let info = protocol_info(compiled);
+    Compared {
+        name: name.into(),
+        title: info.title,
+        edition: info.edition,
+        sha256: info.sha256,
+        metrics: metric::names(&compiled.plan),
+        criterion: info.verdict_rule,
+        files: info.files,
     }
 }

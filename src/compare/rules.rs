@@ -3,6 +3,7 @@
 use super::found::{CampaignComparison, Judgement};
 use super::subject::{Subject, WithProtocols};
 use crate::check::diff::{self, Change};
+use crate::check::family::Family;
 use crate::result::Reason;
 use crate::result::comparison::{Difference, Ratio};
 
@@ -14,8 +15,7 @@ pub fn changes(before: &Subject, after: &Subject) -> Vec<Change> {
 /// Whether two protocols are variants of each other: they have a protocol in common that they are
 /// or extend, or half of the rules of the first stand in the second. Of others, no rule makes sense
 /// in the place of another.
-pub fn related(before: &Subject, after: &Subject) -> bool {
-    let (a, b) = (&before.family, &after.family);
+pub fn related(a: &Family, b: &Family) -> bool {
     let common = a.extended().any(|source| b.extended().any(|other| other.text == source.text));
     common || 2 * diff::kept(&a.merged, &b.merged) >= a.merged.blocks.len()
 }

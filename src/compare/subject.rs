@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::Settings;
-use crate::certify::{Compiled, compile, overrides};
+use crate::certify::{Compiled, Set, compile, overrides};
 use crate::check::Overrides;
 use crate::check::diff::Change;
 use crate::check::family::Family;
@@ -109,17 +109,7 @@ pub fn opened(
     settings: &Settings,
     problems: &mut Problems,
 ) -> Option<Vec<WithProtocols>> {
-    for (name, _) in &settings.set {
-        let known: Vec<&str> =
-            protocols.iter().flat_map(|subject| parameters(&subject.family)).collect();
-        if !known.contains(&name.as_str()) {
-            let problem = Problem::error(
-                "unknown-parameter",
-                format!("no protocol of the comparison has a parameter `{name}`"),
-            );
-            problems.push(problem.suggest(name, known));
-        }
-    }
+    unknown_parameters(&settings.set, protocols.iter().map(|subject| &subject.family), problems);
     // Campaigns that set the same parameters share the compiled protocols.
     type Known = (Vec<(String, String)>, Arc<CompiledAll>);
     let mut known: Vec<Known> = Vec::new();
@@ -139,6 +129,22 @@ pub fn opened(
         all.push(WithProtocols { name, campaign, compiled });
     }
     (!problems.any_error()).then_some(all)
+}
+
+/// A parameter of the command line that no protocol has.
+///
+/// Problems: `unknown-parameter`.
+pub fn unknown_parameters<'a>(
+    set: &[Set],
+    families: impl IntoIterator<Item = &'a Family>,
+    problems: &mut Problems,
+) {
+    let known: Vec<&str> = families.into_iter().flat_map(parameters).collect();
+    for (name, _) in set.iter().filter(|(name, _)| !known.contains(&name.as_str())) {
+        let says = format!("no protocol of the comparison has a parameter `{name}`");
+        let problem = Problem::error("unknown-parameter", says);
+        problems.push(problem.suggest(name, known.iter().copied()));
+    }
 }
 
 fn compiled_with(
@@ -183,7 +189,7 @@ fn parameters(family: &Family) -> impl Iterator<Item = &str> {
 }
 
 /// Those that a protocol has.
-fn of_protocol(family: &Family, overrides: &Overrides) -> Overrides {
+pub fn of_protocol(family: &Family, overrides: &Overrides) -> Overrides {
     let has = |name: &String| parameters(family).any(|known| known == name);
     let mut own: Overrides = overrides
         .iter()

@@ -15,6 +15,7 @@ pub mod figure;
 pub mod findings;
 pub mod found;
 pub mod html;
+pub mod impact;
 pub mod number;
 pub mod pdf;
 pub mod rules;

@@ -5,6 +5,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use crate::result::comparison::{Comparison, Sensitivity};
+use crate::result::impact::{Flip, Impact};
 use crate::result::margin::MarginStudy;
 use crate::result::study::{
     AtOffset, ParameterStudy, QuantitySpread, SelectionStudy, Study, StudyResult, SyncStudy,
@@ -424,6 +425,29 @@ pub fn comparison(found: &Comparison) -> Result<Vec<File>, csv::Error> {
             "rule, difference = words, campaign, verdict before, verdict after, ratio before, ratio after, reason",
             &found.differences,
         )?,
+    ])
+}
+
+/// The tables of what a change would have decided.
+///
+/// # Errors
+/// As [`certification`].
+pub fn impact(found: &Impact) -> Result<Vec<File>, csv::Error> {
+    let of_flip = |of: &Flip| json!({"campaign": of.campaign});
+    let minimal = found.flips.iter().flat_map(|of| {
+        let set = |rules| json!({"campaign": of.campaign, "rules": rules, "exact": of.exact});
+        of.minimal.iter().map(set)
+    });
+    let margins = found.flips.iter().flat_map(|of| entries(&of.margin, of_flip(of)));
+    Ok(vec![
+        table("rules", "rule, before, after, cannot be applied alone = reason", &found.rules)?,
+        table("verdicts", "campaign = name, from, before, after, reasons", &found.archive)?,
+        table("flips", "campaign, before, after, exact", &found.flips)?,
+        table("minimal", "campaign, rules, exact", minimal)?,
+        table("margins", "campaign, rule, changed, limit = value, flips at, unit", margins)?,
+        table("near", "campaign, verdict, rule, limit = value, flips at, unit", &found.near)?,
+        table("shares", "by, group, campaigns, before, after", &found.shares)?,
+        table("not_replayed", "campaign, quantities, sections", &found.not_replayed)?,
     ])
 }
 

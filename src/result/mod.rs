@@ -11,6 +11,7 @@ mod direction;
 pub mod domain;
 pub mod finding;
 pub mod found;
+pub mod impact;
 mod kind;
 pub mod margin;
 pub mod origin;

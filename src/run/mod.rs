@@ -43,4 +43,4 @@ pub use reduce::held::{Change, Holding};
 pub use reduce::{Numbered, Progress, Shard};
 pub use sections::{Basis, Facts, Unit, scalar};
 pub use values::{Offset, Print, Row, SectionValues, Shifts};
-pub use verdict::{Evaluated, Judged, LimitChange, limit_changes, replay};
+pub use verdict::{Evaluated, Given, Judged, LimitChange, limit_changes, overall, replay};

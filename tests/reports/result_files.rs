@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use fishplate::cli::schema::{Of, schema};
 use fishplate::result::comparison::Comparison;
 use fishplate::result::diagnosis::Diagnosis;
+use fishplate::result::impact::Impact;
 use fishplate::result::study::Study;
 use fishplate::result::{Certification, text};
 use serde::Serialize;
@@ -104,6 +105,19 @@ fn comparisons_are_read_as_they_are_written() {
         "--no-report",
     ];
     check::<Comparison>(&arguments, "comparison.json", Of::Comparison);
+}
+
+#[test]
+fn impacts_are_read_as_they_are_written() {
+    let arguments = [
+        "impact",
+        "en14363-2016-annex-t",
+        "en14363-2016-annex-t-strict-acceleration",
+        "--over",
+        "examples/coach-good",
+        "--no-report",
+    ];
+    check::<Impact>(&arguments, "impact.json", Of::Impact);
 }
 
 #[test]

@@ -9,6 +9,7 @@ mod common {
 }
 
 mod compare;
+mod impact;
 mod margin;
 mod study;
 mod study_command;

@@ -8,7 +8,7 @@ mod verdicts;
 use crate::report::document::*;
 use crate::report::figure;
 use crate::report::view::{self, Opening};
-use crate::result::comparison::{Comparison, Sensitivity};
+use crate::result::comparison::{Compared, Comparison, OnCampaign, Sensitivity};
 use crate::result::{CampaignInfo, FileHash, Identification, Kind, ProtocolInfo, VerdictWords};
 
 /// Title of every comparison.
@@ -23,7 +23,14 @@ pub fn document(found: &Comparison) -> Document {
     chapters.push(verdicts::ratios(found));
     chapters.push(verdicts::compared(found));
     let title = (TITLE.into(), "Comparison of protocols");
-    view::study(title, opening(found), (&inputs(found), &rules(found)), chapters)
+    let campaigns: Vec<&OnCampaign> = found.campaigns.iter().collect();
+    let protocols: Vec<&Compared> = found.protocols.iter().collect();
+    let rules = ProtocolInfo {
+        sha256: found.work.sha256.clone(),
+        graph_nodes: found.work.operations,
+        ..rules(&protocols)
+    };
+    view::study(title, opening(found), (&inputs(&campaigns), &rules), chapters)
 }
 
 /// What it came to, and what was done for it.
@@ -73,19 +80,29 @@ fn verdicts_apart(found: &Comparison) -> (Finding, String) {
     }
 }
 
+/// Names one after the other.
+fn joined<T>(all: &[&T], name: impl Fn(&T) -> &str, between: &str) -> String {
+    all.iter().map(|one| name(one)).collect::<Vec<_>>().join(between)
+}
+
 /// All campaigns as one list of files.
-fn inputs(found: &Comparison) -> CampaignInfo {
+fn inputs(all: &[&OnCampaign]) -> CampaignInfo {
     let file = |campaign: &str, file: &FileHash| FileHash {
         path: format!("{campaign}/{}", file.path),
         ..file.clone()
     };
-    let of = |one: &crate::result::comparison::OnCampaign| {
+    let of = |one: &&OnCampaign| {
         one.files.iter().map(|known| file(&one.name, known)).collect::<Vec<_>>()
     };
+    campaigns(joined(all, |one| &one.name, "; "), all.iter().flat_map(of).collect())
+}
+
+/// Several campaigns in the place of one.
+pub fn campaigns(name: String, files: Vec<FileHash>) -> CampaignInfo {
     CampaignInfo {
-        name: found.campaigns.iter().map(|one| one.name.as_str()).collect::<Vec<_>>().join("; "),
+        name,
+        files,
         members: Vec::new(),
-        files: found.campaigns.iter().flat_map(of).collect(),
         vehicle: Vec::new(),
         facts: Vec::new(),
         outside_table: Vec::new(),
@@ -95,24 +112,24 @@ fn inputs(found: &Comparison) -> CampaignInfo {
 }
 
 /// All protocols in the place of one.
-fn rules(found: &Comparison) -> ProtocolInfo {
+pub fn rules(all: &[&Compared]) -> ProtocolInfo {
     ProtocolInfo {
-        name: found.protocols.iter().map(|one| one.name.as_str()).collect::<Vec<_>>().join(", "),
-        title: found.protocols.iter().map(|one| one.title.as_str()).collect::<Vec<_>>().join("; "),
-        sha256: found.work.sha256.clone(),
+        name: joined(all, |one| &one.name, ", "),
+        title: joined(all, |one| &one.title, "; "),
+        sha256: String::new(),
         own: None,
         shipped_edition: None,
         edition: None,
         source: None,
         scope: None,
         notes: Vec::new(),
-        files: found.protocols.iter().flat_map(|one| one.files.clone()).collect(),
+        files: all.iter().flat_map(|one| one.files.clone()).collect(),
         deviations: Vec::new(),
         parameters: Vec::new(),
         parameters_off_default: Vec::new(),
         filters: Vec::new(),
         channels: Vec::new(),
-        graph_nodes: found.work.operations,
+        graph_nodes: 0,
         graph_svg: String::new(),
         verdict_rule: String::new(),
         verdict_words: VerdictWords::of(Kind::Validation),

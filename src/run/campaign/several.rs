@@ -7,6 +7,7 @@ use crate::check::plan::Plan;
 use crate::data::Campaign;
 use crate::graph::{self, Graph};
 use crate::problem::Problems;
+use crate::run::campaign::Reduced;
 use crate::run::record::{Columns, Counts, Keys, Numbers, SectionRecords, Sharing, Trial, Work};
 use crate::run::reduce::{Prepared, Progress, section};
 use crate::run::values::{SectionValues, Shifts};
@@ -82,19 +83,7 @@ pub fn several(
         as_recorded: &as_recorded,
         in_trials: &in_trials,
     };
-    let of_sections: Vec<(Rounds, Counts)> = (0..campaign.names.len())
-        .into_par_iter()
-        .with_max_len(1)
-        .map(|at| together.section(at, progress))
-        .collect();
-    let (rounds, counts): (Vec<Rounds>, Vec<Counts>) = of_sections.into_iter().unzip();
-    let mut by_round: Vec<Vec<Vec<SectionValues>>> =
-        vec![vec![Vec::new(); rules.len()]; 1 + trials.len()];
-    for rounds in rounds {
-        for (all, values) in by_round.iter_mut().zip(rounds) {
-            all.iter_mut().zip(values).for_each(|(all, values)| all.extend(values));
-        }
-    }
+    let (by_round, counts) = together.all_sections(progress);
     let mut by_round = by_round.into_iter();
     let as_recorded: Vec<Result<Evaluated, Problems>> = prepared
         .into_iter()
@@ -110,7 +99,34 @@ pub fn several(
     };
     let trials =
         by_round.map(|values| values.into_iter().enumerate().map(in_trial).collect()).collect();
-    Several { as_recorded, trials, counts: counts.into_iter().sum() }
+    Several { as_recorded, trials, counts }
+}
+
+/// The values of every section of a campaign by several protocols.
+pub fn reduced(
+    rules: &[(&Plan, &Graph)],
+    campaign: &Campaign,
+    progress: Progress<'_>,
+) -> Vec<Result<Reduced, Problems>> {
+    let prepared =
+        rules.par_iter().map(|(plan, graph)| Prepared::new(plan, graph, campaign.into()));
+    let prepared: Vec<Result<Prepared<'_>, Problems>> = prepared.collect();
+    let mut columns = Columns::default();
+    prepared.iter().flatten().for_each(|prepared| columns.add(prepared.plan, prepared.graph));
+    let as_recorded: Vec<_> = prepared.iter().map(|prepared| prepared.as_ref().ok()).collect();
+    let together = Together {
+        campaign,
+        columns: &columns,
+        trials: &[],
+        as_recorded: &as_recorded,
+        in_trials: &vec![None; rules.len()],
+    };
+    let values = together.all_sections(progress).0.swap_remove(0);
+    let of = |(prepared, values): (Result<Prepared<'_>, Problems>, Vec<SectionValues>)| {
+        let sections = values.into_iter().enumerate().collect();
+        Ok(Reduced { basis: prepared?.basis, sections, traces: Vec::new() })
+    };
+    prepared.into_iter().zip(values).map(of).collect()
 }
 
 struct Together<'a> {
@@ -122,6 +138,24 @@ struct Together<'a> {
 }
 
 impl Together<'_> {
+    /// The values of every section: as recorded and then in each trial, by protocol.
+    fn all_sections(&self, progress: Progress<'_>) -> (Vec<Vec<Vec<SectionValues>>>, Counts) {
+        let of_sections: Vec<(Rounds, Counts)> = (0..self.campaign.names.len())
+            .into_par_iter()
+            .with_max_len(1)
+            .map(|at| self.section(at, progress))
+            .collect();
+        let (rounds, counts): (Vec<Rounds>, Vec<Counts>) = of_sections.into_iter().unzip();
+        let none = vec![Vec::new(); self.as_recorded.len()];
+        let mut by_round: Vec<Vec<Vec<SectionValues>>> = vec![none; 1 + self.trials.len()];
+        for rounds in rounds {
+            for (all, values) in by_round.iter_mut().zip(rounds) {
+                all.iter_mut().zip(values).for_each(|(all, values)| all.extend(values));
+            }
+        }
+        (by_round, counts.into_iter().sum())
+    }
+
     fn section(&self, at: usize, progress: Progress<'_>) -> (Rounds, Counts) {
         let cell = &self.campaign.names[at];
         let place = self.as_recorded.iter().flatten().find_map(|prepared| {

@@ -4,7 +4,9 @@ use super::judge::{self, Judged, Told};
 use crate::check::plan::{EstimateKind, Plan};
 use crate::problem::Problems;
 use crate::result::study::Reduction;
-use crate::result::{Consequence, DomainResult, FileHash, Finding, Reason, Remark, VehicleValue};
+use crate::result::{
+    Consequence, DomainResult, FileHash, Finding, QuantityResult, Reason, Remark, VehicleValue,
+};
 use crate::run::data_rules::{
     changed, copies, matching, nothing_usable, over_sections, stop_on_fault, take_over,
 };
@@ -135,6 +137,12 @@ impl Evaluated {
             self.missing.iter().cloned().chain(domain::barred(&self.application)).collect();
         let told = Told { findings: &self.findings, barred };
         judge::judge(plan, &self.facts, (&self.units, &self.values), told)
+    }
+
+    /// The result of one quantity, given by index, and a reason for each limit that is not met.
+    pub fn judge_quantity(&self, plan: &Plan, index: usize) -> (QuantityResult, Vec<Reason>) {
+        let used = used(&self.units, &self.values);
+        judge::of_quantities(plan, &self.facts, &used, index..index + 1).swap_remove(0)
     }
 
     /// The same with other values of the sections. Those are used that are used here, as far as

@@ -2,6 +2,7 @@
 //! after the table of values.
 
 use std::collections::{BTreeSet, HashMap};
+use std::ops::Range;
 
 use indexmap::IndexMap;
 
@@ -14,7 +15,7 @@ use crate::result::{
 };
 use crate::run::data_rules::changed;
 use crate::run::describe::{reports, spreads};
-use crate::run::estimate::{Group, Member, Rows, count_independent, used};
+use crate::run::estimate::{Group, Member, Rows, Used, count_independent, used};
 use crate::run::limit::{Compared, Judging, rule_place};
 use crate::run::sections::requirements::{self, Unchecked};
 use crate::run::sections::{Facts, Unit};
@@ -34,6 +35,10 @@ pub struct Judged {
     pub zones: Vec<ZoneResult>,
     /// Numbers of the data of the sections.
     pub reported: Vec<Reported>,
+    /// Why no verdict on limits can be given.
+    pub barred: Vec<Reason>,
+    /// Of each quantity, a reason for each limit that is not met.
+    pub fails: Vec<Vec<Reason>>,
 }
 
 /// What was told before anything is judged.
@@ -70,14 +75,8 @@ pub fn judge(
     missing.extend(required.map(|Unchecked { title, says, sections, .. }| {
         Reason::RequiredNotChecked { check: title.into(), reason: Box::new(says.clone()), sections }
     }));
-    let all = Rows::of_all(plan, facts, &used);
-    let table: Vec<_> = all.iter().map(Rows::usable).collect();
-    let of_quantity = |(quantity, Rows { members, too_few, reason }): (&Quantity, &Rows<'_>)| {
-        let rows = Group { plan, facts, quantity: Some(quantity), members, table: &table };
-        quantity_result(&Judging { quantity, rows, too_few }, reason.clone())
-    };
     let (quantities, fails): (Vec<QuantityResult>, Vec<Vec<Reason>>) =
-        plan.quantities.iter().zip(&all).map(of_quantity).unzip();
+        of_quantities(plan, facts, &used, 0..plan.quantities.len()).into_iter().unzip();
     let given = verdicts::Given { barred: missing, quantities: &quantities, fails };
     let decided = verdicts::decide(plan, &given);
     let verdicts = verdicts::named(plan, &decided);
@@ -90,7 +89,37 @@ pub fn judge(
     let outcome = overall.word.clone();
     let reported = reports::of_sections(plan, facts, used.iter().map(|(unit, _)| *unit));
     let reasons = overall.reasons;
-    Judged { verdict, own_word, outcome, reasons, verdicts, quantities, zones, reported }
+    let verdicts::Given { barred, fails, .. } = given;
+    Judged {
+        verdict,
+        own_word,
+        outcome,
+        reasons,
+        verdicts,
+        barred,
+        fails,
+        quantities,
+        zones,
+        reported,
+    }
+}
+
+/// The results of some quantities, given by index, each with a reason for each limit that is not
+/// met.
+pub fn of_quantities(
+    plan: &Plan,
+    facts: &Facts,
+    used: &Used<'_>,
+    which: Range<usize>,
+) -> Vec<(QuantityResult, Vec<Reason>)> {
+    let all = Rows::of_all(plan, facts, used);
+    let table: Vec<_> = all.iter().map(Rows::usable).collect();
+    let of_quantity = |at: usize| {
+        let (quantity, Rows { members, too_few, reason }) = (&plan.quantities[at], &all[at]);
+        let rows = Group { plan, facts, quantity: Some(quantity), members, table: &table };
+        quantity_result(&Judging { quantity, rows, too_few }, reason.clone())
+    };
+    which.map(of_quantity).collect()
 }
 
 /// One reason for all parameters that have no value.

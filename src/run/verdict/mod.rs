@@ -17,3 +17,4 @@ mod verdicts;
 pub use changed::{LimitChange, limit_changes};
 pub use evaluated::{Evaluated, all_values};
 pub use judge::Judged;
+pub use verdicts::{Given, overall};

@@ -58,6 +58,11 @@ pub fn decide(plan: &Plan, given: &Given<'_>) -> Vec<Decided> {
     decided.into_values().collect()
 }
 
+/// What the overall verdict of the plan comes to.
+pub fn overall(plan: &Plan, given: &Given<'_>) -> Outcome {
+    decide(plan, given).first().map_or(Outcome::NotAssessable, |overall| overall.outcome)
+}
+
 /// A verdict, after those that it uses. The checker has excluded verdicts that depend on
 /// themselves.
 fn decide_one(plan: &Plan, given: &Given<'_>, at: usize, decided: &mut BTreeMap<usize, Decided>) {
