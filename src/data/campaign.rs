@@ -11,6 +11,7 @@ mod members;
 mod opening;
 mod records;
 mod runs;
+mod tolerances;
 mod uncertainty;
 
 use std::path::Path;
@@ -212,7 +213,7 @@ impl Campaign {
         check_edited(&layout.edited, layout.origin.as_ref(), problems);
         let (facts, uncertainties) =
             (facts::facts(&tree), layout.uncertainties.unwrap_or_default());
-        uncertainty::check_tolerances(&uncertainties, &facts, problems);
+        tolerances::check_tolerances(&uncertainties, &facts, problems);
         let name = layout.name.map(|name| name.value).unwrap_or_default();
         let mut vehicles = layout.vehicles.unwrap_or_default();
         if vehicles.is_empty() {

@@ -1,8 +1,7 @@
 //! Uncertainties of the channels, as `campaign.yaml` states them: the one source of all that
 //! computes with them.
 
-use super::Fact;
-use crate::problem::{Problem, Problems, error, problem};
+use crate::problem::{Problem, error, problem};
 use crate::source::{Span, Spanned};
 use crate::units::{Unit, number};
 use crate::yaml::{FromNode, Key, Node, OneOrMore, Reader, fields, span_of_value};
@@ -12,16 +11,6 @@ pub const UNCERTAINTY: &str = "uncertainty";
 
 /// The key that holds for all channels.
 const CORRELATED: &str = "correlated";
-
-/// The map of `campaign.yaml` with what a diagnosis tolerates.
-const TOLERANCES: &str = "declared_tolerances";
-
-/// In the tolerances, what is of every channel: `channel gain [-]`.
-const EVERY_CHANNEL: &str = "channel";
-
-/// Relative difference up to which two numbers state the same uncertainty: both are rounded to two
-/// or three digits.
-const SAME: f64 = 0.01;
 
 /// Of what an uncertainty is, as one standard deviation.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,14 +22,14 @@ pub enum Size {
 }
 
 impl Size {
-    fn word(&self) -> &'static str {
+    pub fn word(&self) -> &'static str {
         match self {
             Self::Gain(_) => "gain",
             Self::Offset(..) => "offset",
         }
     }
 
-    fn si(&self) -> f64 {
+    pub fn si(&self) -> f64 {
         let (Self::Gain(standard) | Self::Offset(standard, _)) = *self;
         standard
     }
@@ -167,43 +156,6 @@ fn sized(text: &str, factor: f64) -> Result<Size, Problem> {
     })?;
     let standard = unit.to_si(value) / factor;
     Ok(if unit.text == "%" { Size::Gain(standard) } else { Size::Offset(standard, unit) })
-}
-
-/// What the diagnosis tolerates of a channel must be what its uncertainty is.
-///
-/// Problem: `uncertainty-contradiction`.
-pub fn check_tolerances(all: &[Uncertainty], facts: &[Fact], problems: &mut Problems) {
-    for of in all {
-        let word = of.size.word();
-        let names = [of.channel.value.as_str(), EVERY_CHANNEL].map(|name| format!("{name} {word}"));
-        for fact in
-            facts.iter().filter(|fact| fact.group == TOLERANCES && names.contains(&fact.name))
-        {
-            let unit = Unit::parse(fact.unit.as_deref().unwrap_or("-"));
-            let declared = fact.text.trim().parse().ok().zip(unit.ok());
-            // What is no number or unit, the diagnosis refuses.
-            let Some(declared) = declared.map(|(number, unit): (f64, Unit)| unit.to_si(number))
-            else {
-                continue;
-            };
-            let stated = of.size.si();
-            if (declared - stated).abs() <= SAME * declared.max(stated) {
-                continue;
-            }
-            let problem = problem!(
-                "uncertainty-contradiction",
-                &of.span,
-                "the standard uncertainty of the {word} of `{}` is another one than `{}` among the declared tolerances",
-                of.channel.value,
-                fact.name
-            );
-            problems.push(
-                problem
-                    .also(&fact.span, "declared here")
-                    .help("write the same standard deviation in both, or leave the tolerance out"),
-            );
-        }
-    }
 }
 
 #[cfg(test)]

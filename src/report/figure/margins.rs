@@ -1,7 +1,6 @@
 //! The range of each change within which a verdict stays.
 
 use super::kit::*;
-use crate::report::study::margin::{name, range};
 use crate::result::VerdictWords;
 use crate::result::margin::{Changed, Margin, MarginStudy};
 
@@ -13,8 +12,11 @@ const NUMBERS: f64 = 120.0;
 /// Largest change of a limit that is drawn, in per cent.
 const MOST: f64 = 100.0;
 
+/// The name of a change, and from where to where the verdict stays.
+type Label<'a> = &'a dyn Fn(&Margin) -> [String; 2];
+
 /// A bar for each change that has two sides, as a share of the largest one that was searched.
-pub fn margins(study: &MarginStudy, words: &VerdictWords) -> String {
+pub fn margins(study: &MarginStudy, words: &VerdictWords, label: Label<'_>) -> String {
     let rows: Vec<&Margin> = study.margin.iter().filter(|margin| drawn(margin)).collect();
     let legend = Legend::new(
         [
@@ -29,7 +31,8 @@ pub fn margins(study: &MarginStudy, words: &VerdictWords) -> String {
     let mut canvas = Canvas::new(WIDTH, frame.bottom() + 8.0);
     legend.draw(&mut canvas, (NAMES, 0.0));
     for (at, margin) in rows.iter().enumerate() {
-        row(&mut canvas, &frame, (margin, scale(margin, &rows)), top + (at as f64 + 0.5) * ROW);
+        let y = top + (at as f64 + 0.5) * ROW;
+        row(&mut canvas, &frame, (margin, scale(margin, &rows)), &label(margin), y);
     }
     let none = frame.x.at(0.0);
     canvas.line((none, frame.top()), (none, frame.bottom()), INK, 0.7);
@@ -60,11 +63,15 @@ fn scale(margin: &Margin, rows: &[&Margin]) -> f64 {
     if far > 0.0 { far } else { 1.0 }
 }
 
-fn row(canvas: &mut Canvas, frame: &Frame, (margin, scale): (&Margin, f64), y: f64) {
-    let title = name(margin);
-    canvas.text(&cut(&title, TEXT, NAMES - 8.0), (2.0, y), &Font::left(TEXT));
-    let shown = range(margin);
-    let numbers = cut(&shown, SMALL, NUMBERS - 8.0);
+fn row(
+    canvas: &mut Canvas,
+    frame: &Frame,
+    (margin, scale): (&Margin, f64),
+    [title, shown]: &[String; 2],
+    y: f64,
+) {
+    canvas.text(&cut(title, TEXT, NAMES - 8.0), (2.0, y), &Font::left(TEXT));
+    let numbers = cut(shown, SMALL, NUMBERS - 8.0);
     canvas.text(&numbers, (WIDTH - 2.0, y), &Font::right(SMALL));
     canvas.line((frame.left(), y), (frame.right(), y), GRID, 0.4);
     let x = |value: f64| frame.x.within((value / scale).clamp(-1.0, 1.0));

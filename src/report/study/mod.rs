@@ -1,7 +1,7 @@
 //! A study as a document: chapters of text, tables and figures, printed as PDF and HTML from the
 //! same data.
 
-pub mod margin;
+mod margin;
 mod parameters;
 mod sections;
 mod sync;
@@ -12,6 +12,7 @@ use crate::report::document::*;
 use crate::report::figure;
 use crate::report::number;
 use crate::report::view::{self, Opening};
+use crate::result::margin::Margin;
 use crate::result::study::{QuantitySpread, Share, Study, StudyResult};
 use crate::result::{ParameterInfo, Scope, Verdict, VerdictWords};
 
@@ -119,7 +120,10 @@ pub fn figures(study: &Study) -> Vec<(String, String)> {
             drawn
         }
         StudyResult::Parameters(found) => vec![("choices".into(), figure::choices(found, words))],
-        StudyResult::Margin(found) => vec![("margins".into(), figure::margins(found, words))],
+        StudyResult::Margin(found) => {
+            let label = |of: &Margin| [margin::name(of), margin::range(of)];
+            vec![("margins".into(), figure::margins(found, words, &label))]
+        }
     }
 }
 
