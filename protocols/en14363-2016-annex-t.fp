@@ -825,7 +825,7 @@ quantity YQ_max "Ratio Y/Q, maximum"
   filter      RATIO_WINDOW
   value       extreme_value
   difference  magnitudes
-  limit       std 0.10
+  limit       std 0.1
   limit       mean mean_limit_share of std
   source      "Table 1"
   note        "Absolute values of simulation and measurement."
@@ -867,7 +867,7 @@ quantity ay_max "Car body lateral acceleration, maximum"
   filter      BP
   value       extreme_lateral
   difference  magnitudes
-  limit       std 0.40 m/s^2, doubled when lighter_requirements
+  limit       std 0.4 m/s^2, doubled when lighter_requirements
   limit       mean mean_limit_share of std
   source      "Table 1"
   note        "Absolute values of simulation and measurement."
@@ -878,7 +878,7 @@ quantity az_max "Car body vertical acceleration, maximum"
   filter      BP
   value       extreme_vertical
   difference  magnitudes
-  limit       std 0.40 m/s^2, doubled when lighter_requirements
+  limit       std 0.4 m/s^2, doubled when lighter_requirements
   limit       mean mean_limit_share of std
   source      "Table 1"
   note        "Absolute values of simulation and measurement."

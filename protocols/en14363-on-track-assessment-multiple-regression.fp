@@ -12,8 +12,19 @@ remove
   limit  every loading
   limit  every quasi_static
 
+parameter admissible_cant_deficiency "Admissible cant deficiency of the vehicle"
+  default  130 mm
+  range    0 mm to 350 mm
+  note     "A property of the vehicle: set it to that of the vehicle tested."
+
+parameter target_factor "Cant deficiency for which maxima are estimated, over the admissible one"
+  default      1.1
+  range        0.5 to 1.5
+  unconfirmed  "From memory; the standard was not to hand."
+  source       "EN 14363:2016, clause 7, two-dimensional method"
+
 define curving "Curvature of the section, 0 on straight track"
-  is  0 1/m when direction is straight, otherwise 1/radius
+  is  0 1/m when direction is straight, otherwise 1 / radius
 
 define in_zone_{zone_name} "1 in zone {zone_name}"
   for each  zone_name in 2, 3, 4

@@ -16,7 +16,7 @@ protocol en14363-on-track-assessment "On-track assessment of running safety, tra
 
 # ---- statistical method
 parameter k_safety "Multiple of the standard deviation, running safety"
-  default      3.0
+  default      3
   range        0 to 5
   unconfirmed  "From memory; the standard was not to hand."
   source       "EN 14363:2016, clause 7, one-dimensional method"
@@ -26,17 +26,6 @@ parameter k_loading "Multiple of the standard deviation, track loading and ride"
   range        0 to 5
   unconfirmed  "From memory; the standard was not to hand."
   source       "EN 14363:2016, clause 7, one-dimensional method"
-
-parameter admissible_cant_deficiency "Admissible cant deficiency of the vehicle"
-  default  130 mm
-  range    0 mm to 350 mm
-  note     "A property of the vehicle: set it to that of the vehicle tested."
-
-parameter target_factor "Cant deficiency for which maxima are estimated, over the admissible one"
-  default      1.1
-  range        0.5 to 1.5
-  unconfirmed  "From memory; the standard was not to hand."
-  source       "EN 14363:2016, clause 7, two-dimensional method"
 
 parameter sections_per_zone "Sections required in each test zone"
   default      25

@@ -3,6 +3,7 @@
 use super::conditions::impossible;
 use super::evaluate::words;
 use super::expressions::origin;
+use super::names::bare_word;
 use super::prelude::*;
 use crate::syntax::phrase::Number;
 
@@ -19,6 +20,8 @@ impl Checker<'_> {
         let mut last: Option<Expr> = None;
         let mut values: Vec<Expr> = Vec::new();
         let mut ok = true;
+        let told = self.problems.0.len();
+        let written: Vec<&Phrase> = arms.iter().map(|(value, _)| value).chain(otherwise).collect();
         let always = otherwise.map(|value| (value, None));
         let arms = arms.iter().map(|(value, condition)| (value, Some(condition)));
         for (value, condition) in arms.chain(always) {
@@ -45,6 +48,9 @@ impl Checker<'_> {
                 None => scope.forget(before),
             }
         }
+        if !ok {
+            self.words_of_nothing(&written, told, span);
+        }
         let (first, rest) = values.split_first().filter(|_| ok)?;
         for other in rest {
             self.alike(first, other)?;
@@ -54,6 +60,24 @@ impl Checker<'_> {
             self.covered(found.iter().map(|(_, condition)| condition), span);
         }
         self.select(found, last, span, scope.zone.as_deref())
+    }
+
+    /// One problem for cases that are all unknown words, in place of one for each: `low when ...,
+    /// otherwise high`. `told` is the number of problems before them.
+    fn words_of_nothing(&mut self, written: &[&Phrase], told: usize, span: &Span) {
+        let words: Option<Vec<&str>> = written.iter().copied().map(bare_word).collect();
+        let Some(words) = words.filter(|words| words.len() > 1) else { return };
+        let new = self.problems.0.get(told..).unwrap_or_default();
+        if new.len() != words.len() || new.iter().any(|problem| problem.code != "unknown-name") {
+            return;
+        }
+        self.problems.0.truncate(told);
+        let says = format!("`{}` are words, which only data can have", words.join("`, `"));
+        let help = format!(
+            "declare a column of the table of sections: a `section` block with `one of  {}`; limits of some sections end with `for sections where ...`",
+            words.join(", ")
+        );
+        self.tell(error("unknown-name", says, span).help(help));
     }
 
     /// The value of the first condition that holds, of which all have the same type.

@@ -2,9 +2,10 @@
 //! sections: places, data, channels, signals.
 
 use super::names::{Place, Signal};
-use super::positions::{is_each, joined};
+use super::positions::joined;
 use super::prelude::*;
 use crate::syntax::families;
+use crate::syntax::is_each;
 use crate::syntax::phrase::Pick;
 
 /// Largest number of positions of a place: the wheels of a train of sixty vehicles. A signal at

@@ -4,11 +4,10 @@ use std::cmp::Ordering;
 
 use super::find::AT_MOST;
 use super::overlay::slot;
-use super::positions::is_each;
 use super::prelude::*;
 use crate::result::Deviation;
-use crate::syntax::keys::{self, NOT_ASSESSABLE, OPTIONAL, Sort};
-use crate::syntax::phrase::Pick;
+use crate::syntax::keys::{NOT_ASSESSABLE, OPTIONAL};
+use crate::syntax::{keys, same_meaning};
 
 /// Rules added, removed or changed from the first document to the second, in the order of the
 /// second.
@@ -174,12 +173,6 @@ pub const PRINTED: [&str; 11] = [
     "symbol",
     "report",
 ];
-
-/// What is known of a field of the blocks of a kind.
-fn key_of(kind: &str, key: &str) -> Option<&'static keys::Key> {
-    let kind = keys::kind(kind)?;
-    [true, false].into_iter().find_map(|named| kind.with_name(named).key(key))
-}
 
 /// Blocks without which less is asked for.
 const REQUIREMENTS: [&str; 6] = ["zone", "check", "plausibility", "find", "domain", "quantity"];
@@ -362,55 +355,4 @@ fn compare_field(
 fn equal(kind: &str, a: &Field, b: &Field) -> bool {
     let (key, a, b) = (&a.key.text, &a.value, &b.value);
     a == b || same_meaning(kind, key, a, b)
-}
-
-/// Whether both fields can be read, and mean the same however they are written.
-fn alike<T: PartialEq>(a: &Text, b: &Text, read: fn(&Text, &mut Problems) -> Option<T>) -> bool {
-    let read = |text: &Text| read(text, &mut Problems::default());
-    read(a).is_some_and(|meant| read(b).is_some_and(|other| meant == other))
-}
-
-/// Whether two values of a field mean the same; not so for prose and for text that cannot be parsed.
-fn same_meaning(kind: &str, key: &str, a: &Text, b: &Text) -> bool {
-    let Some(key) = key_of(kind, key).filter(|key| key.sort == Sort::Phrase) else { return false };
-    match key.word {
-        "over" => alike(a, b, from_pest::domain),
-        "limit" if kind == "quantity" => alike(a, b, from_pest::limit),
-        "report" => alike(a, b, from_pest::report),
-        "minimum pairs" => alike(a, b, from_pest::minimum),
-        "filter" | "step" | "metric" => alike(a, b, from_pest::chain),
-        "of" if kind == "verdict" => alike(a, b, from_pest::list),
-        "one of" | "members" => alike(a, b, from_pest::list),
-        "validated" | "holds" => alike(a, b, from_pest::verdict),
-        "of" => alike(a, b, |text, problems| {
-            let of = from_pest::of_places(text, problems)?;
-            Some((of.signal, picks(&of.picks), of.when))
-        }),
-        "at" => alike(a, b, |text, problems| Some(picks(&from_pest::places(text, problems)?))),
-        "in" => alike(a, b, |text, _| unit(&text.text)),
-        "axis" | "time" => alike(a, b, |text, problems| {
-            let (name, written) = from_pest::axis(text, problems)?;
-            Some((name, unit(&written.node)?))
-        }),
-        "range" => alike(a, b, from_pest::range),
-        "alias" => alike(a, b, from_pest::alias),
-        _ => alike(a, b, from_pest::expression),
-    }
-}
-
-fn unit(text: &str) -> Option<(f64, Dimension)> {
-    Unit::parse(text).ok().map(|unit| (unit.factor, unit.dimension))
-}
-
-/// Positions such as `at wheelsets 1, 3 and side L`; singular and plural have the same meaning.
-fn picks(picks: &[Pick]) -> String {
-    let one = |pick: &Pick| {
-        let words = pick.words.iter().chain(&pick.more).map(|word| word.node.as_str());
-        words
-            .filter(|word| !is_each(word))
-            .map(|word| word.strip_suffix('s').unwrap_or(word))
-            .collect::<Vec<_>>()
-            .join(" ")
-    };
-    picks.iter().map(one).collect::<Vec<_>>().join("; ")
 }

@@ -6,6 +6,7 @@ use super::functions::{function, is_signal_function};
 use super::prelude::*;
 use super::values::Nothing;
 use crate::catalog::{FUNCTIONS, Function, MetricEntry, Reducer, SIGNAL_FUNCTIONS, Signature};
+use crate::syntax::idiom;
 use crate::syntax::phrase::Number;
 
 impl Type {
@@ -217,6 +218,11 @@ impl Checker<'_> {
     }
 
     fn not_a_number(&mut self, signal: &str, span: &Span) -> Option<Expr> {
+        let is_name = signal.chars().all(|c| c.is_alphanumeric() || c == '_');
+        if is_name && !self.is_signal(signal) {
+            self.unknown_signal(signal, span);
+            return None;
+        }
         self.refuse(
             problem!("signal-not-number", span, "expected a number, `{signal}` is a signal")
                 .help("take a number from it: `mean of ...`, `range of ...`"),
@@ -415,7 +421,7 @@ impl Checker<'_> {
                 let known = FUNCTIONS.iter().map(|function| function.name);
                 let known: Vec<&str> =
                     known.chain(SIGNAL_FUNCTIONS.map(|(name, ..)| name)).chain(own).collect();
-                problem.suggest(&name.node, known)
+                or_idiom(problem, &name.node, known)
             });
         };
         let needed = if found.signature == Signature::PairSame { 2 } else { 1 };
@@ -463,12 +469,31 @@ impl Checker<'_> {
     }
 }
 
+/// The problem of an unknown word, with how the language says it, else with the nearest known word.
+pub fn or_idiom(
+    problem: Problem,
+    word: &str,
+    known: impl IntoIterator<Item = impl AsRef<str>>,
+) -> Problem {
+    match idiom(word) {
+        Some(help) => problem.help(help),
+        None => problem.suggest(word, known),
+    }
+}
+
 /// Two operands of different types or dimensions; the problem points at both.
 pub fn unlike(done: &str, left: &Expr, right: &Expr) -> Problem {
     let (a, b) = (left.ty.in_words(), right.ty.in_words());
+    let meant = |one: &Expr, other: &Expr| match other.ty {
+        Type::Number(wanted) | Type::Samples { dimension: wanted, .. } => {
+            Unit::meant(one.span.text(), wanted)
+        }
+        _ => None,
+    };
     problem!("unit-mismatch", &right.span, "{a} and {b} cannot be {done}")
         .label(b)
         .also(&left.span, a)
+        .help_if(meant(right, left).or_else(|| meant(left, right)))
 }
 
 /// Whether a percentile by a constant is taken of something: `percentile level of Q`.

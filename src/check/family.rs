@@ -30,10 +30,23 @@ pub struct Family {
     pub sources: Vec<Arc<Source>>,
     /// The name that each of them gives itself, if it gives one.
     pub names: Vec<Option<Text>>,
-    /// Whether every text was found and every family of blocks could be expanded. If not, names
-    /// may be missing and are not reported as unknown.
+    /// Whether every text was found. If not, any name may be missing.
     pub whole: bool,
+    /// The names, as written, of families of blocks that could not be expanded.
+    pub lost: Vec<String>,
 }
+
+/// Problems of a rule by itself, whatever else the protocol has.
+const BY_ITSELF: [&str; 8] = [
+    "syntax",
+    "unknown-unit",
+    "unit-mismatch",
+    "decimal-comma",
+    "unknown-function",
+    "arguments",
+    "ambiguous",
+    "not-finite",
+];
 
 /// A protocol that is extended.
 #[derive(Clone, Debug)]
@@ -49,6 +62,21 @@ impl Family {
     pub fn extended(&self) -> impl Iterator<Item = &Arc<Source>> {
         let from = self.ancestors.iter().map(|ancestor| ancestor.from);
         std::iter::once(0).chain(from).filter_map(|at| self.sources.get(at))
+    }
+
+    /// Whether a problem of the rules is one although texts or families are missing: it does not
+    /// follow from that.
+    pub fn may_tell(&self, problem: &Problem) -> bool {
+        if BY_ITSELF.contains(&problem.code) {
+            return true;
+        }
+        let at = problem.at.as_ref().map_or("", |at| at.text());
+        let of_name = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-' | '.');
+        let mut words =
+            [at, &problem.says].into_iter().flat_map(|text| text.split(|c: char| !of_name(c)));
+        let lost = |word: &str| self.lost.iter().any(|family| may_be_of(family, word));
+        let counted = problem.code == "no-quantity" && !self.lost.is_empty();
+        self.whole && !counted && !words.any(|word| !word.is_empty() && lost(word))
     }
 
     /// The protocol that this one extends.
@@ -80,20 +108,21 @@ pub fn read(source: &Arc<Source>, find: Find<'_>, problems: &mut Problems) -> Fa
             }
         }
     }
-    let Reader { sources, names, mut whole, .. } = reader;
+    let Reader { sources, names, whole, .. } = reader;
+    let mut lost = Vec::new();
     let mut merged: Option<Document> = None;
     let mut ancestors: Vec<Ancestor> = Vec::new();
     let mut known = Vec::new();
     while let Some(Written { document: written, used, from }) = chain.pop() {
         let mut base = merged.take();
         for text in used {
-            let (text, sound) = families::expand(&text, base.as_ref(), &mut known, problems);
-            whole &= sound;
+            let (text, missing) = families::expand(&text, base.as_ref(), &mut known, problems);
+            lost.extend(missing);
             base = Some(with_used(base, text));
         }
         let left = base.map(|base| without_removed(&base, &written, &known, problems));
-        let (document, sound) = families::expand(&written, left.as_ref(), &mut known, problems);
-        whole &= sound;
+        let (document, missing) = families::expand(&written, left.as_ref(), &mut known, problems);
+        lost.extend(missing);
         let together = left.map_or_else(|| document.clone(), |left| merge(left, &document));
         if !chain.is_empty() {
             let mut merged = together.clone();
@@ -104,8 +133,8 @@ pub fn read(source: &Arc<Source>, find: Find<'_>, problems: &mut Problems) -> Fa
         merged = Some(together);
     }
     let mut merged = merged.unwrap_or_else(|| Document::empty(source));
-    like::write_out(&mut merged, whole, problems);
-    Family { merged, ancestors, sources, names, whole }
+    like::write_out(&mut merged, whole && lost.is_empty(), problems);
+    Family { merged, ancestors, sources, names, whole, lost }
 }
 
 /// A text, and those whose rules it uses.
@@ -210,6 +239,17 @@ impl Reader<'_> {
             return None;
         }
         Some(found)
+    }
+}
+
+/// Whether a member of a family can have this name: `Y_phase` of `Y_{part}`.
+fn may_be_of(family: &str, name: &str) -> bool {
+    let (start, end) = (family.find('{'), family.rfind('}'));
+    match (start, end) {
+        (Some(start), Some(end)) => {
+            name.starts_with(&family[..start]) && name.ends_with(&family[end + 1..])
+        }
+        _ => family == name,
     }
 }
 

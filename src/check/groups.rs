@@ -57,11 +57,10 @@ impl Checker<'_> {
         let zones = self.limit_zones(&written.zones);
         let (mut each_zone, mut each, mut ok) = (false, Vec::new(), true);
         for key in &written.each {
-            if is_zone(key) {
+            if is_zone(key) && !self.only_a_column(key) {
                 ok &= !each_zone || self.key_twice(&key.node, key);
                 if self.zone_names.is_empty() {
-                    self.tell(error("unknown-zone", "the protocol has no zones", key));
-                    ok = false;
+                    ok = self.no_zones(key);
                 }
                 each_zone = true;
                 continue;
@@ -139,6 +138,13 @@ impl Checker<'_> {
             }
             return Some(Key::Column(index));
         }
+        if self.names.defines.contains_key(name) {
+            let problem = problem!("unknown-key", key, "{what} cannot be grouped by `{name}`");
+            return self.refuse(
+                problem
+                    .help(format!("`{name}` is a definition; only columns of words form groups")),
+            );
+        }
         let words =
             self.names.columns.iter().filter(|datum| !matches!(datum.kind, DatumKind::Number(_)));
         let columns = words.map(|datum| datum.name.as_str()).filter(|name| !KEYS.contains(name));
@@ -157,8 +163,24 @@ impl Checker<'_> {
         }
         match self.zone.as_ref().map(|zone| &zone.kind) {
             Some(Kind::Column(index)) => Some(Key::Column(*index)),
-            _ => self.refuse(error("unknown-zone", "the protocol has no zones", key)),
+            _ if self.only_a_column(key) => self.key(key),
+            _ => {
+                self.no_zones(key);
+                None
+            }
         }
+    }
+
+    /// Whether a key that may be the zone is a column of words like others, as the protocol has no
+    /// zones.
+    fn only_a_column(&self, key: &At<String>) -> bool {
+        self.zone_names.is_empty() && self.names.columns.iter().any(|datum| datum.name == key.node)
+    }
+
+    fn no_zones(&mut self, key: &At<String>) -> bool {
+        let help = "add `zone` blocks, and `zone zone` to `sections`; or declare a `section zone` with `one of ...`, whose words then form groups";
+        self.tell(error("unknown-zone", "the protocol has no zones", key).help(help));
+        false
     }
 }
 

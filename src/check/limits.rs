@@ -207,7 +207,8 @@ impl Checker<'_> {
             let help = if unit.text == "-" {
                 "write the limit without unit".into()
             } else {
-                format!("write the limit in {unit}")
+                Unit::meant(bound.span.text(), unit.dimension)
+                    .unwrap_or_else(|| format!("write the limit in {unit}"))
             };
             return self.refuse(
                 problem!(

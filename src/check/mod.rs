@@ -50,6 +50,7 @@ mod slips;
 mod steps;
 mod tables;
 mod transfer;
+mod unused;
 pub mod values;
 mod verdicts;
 mod weights;
@@ -178,9 +179,6 @@ pub fn check(
     overrides: &Overrides,
     problems: &mut Problems,
 ) -> Option<Plan> {
-    if !family.whole {
-        return None;
-    }
     let document = &family.merged;
     let parent_names = family
         .parent()
@@ -225,6 +223,9 @@ pub fn check(
     let before = checker.problems.0.len();
     let plan = checker.plan(document);
     checker.slips(family);
+    if plan.is_some() && !checker.problems.any_error() {
+        checker.unused(family);
+    }
     let names = std::mem::take(&mut checker.names);
     if plan.is_some() && !problems.any_error() {
         let checked = plan.as_ref().map_or(0, rule_count);
@@ -237,6 +238,8 @@ pub fn check(
             ));
         }
     }
+    let told = problems.0.split_off(before);
+    problems.0.extend(told.into_iter().filter(|problem| family.may_tell(problem)));
     for problem in &mut problems.0[before..] {
         name_after_number(problem, &names);
         set_outside(problem, overrides);

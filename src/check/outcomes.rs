@@ -2,9 +2,28 @@
 
 use super::plan::Scope as LimitScope;
 use super::prelude::*;
-use super::verdicts::{NEITHER, says_passed};
 use crate::result::{Direction, OUTCOME};
 use crate::syntax::phrase::Outcome;
+
+/// Words of a report for a verdict that cannot be given or is not given yet. No verdict may use
+/// them.
+pub const NEITHER: [&str; 2] = ["not assessable", "open"];
+/// Words by which a passed verdict is known: one that is failed says none of them, unless it denies
+/// it.
+const PASSED: [&str; 11] = [
+    "validated",
+    "valid",
+    "holds",
+    "met",
+    "accepted",
+    "approved",
+    "passed",
+    "pass",
+    "fulfilled",
+    "satisfied",
+    "agreement",
+];
+const DENIALS: [&str; 5] = ["not", "no", "never", "without", "nothing"];
 
 impl Checker<'_> {
     /// Outcomes of a quantity or a verdict: those that hold first, each word once, the last one for
@@ -128,4 +147,19 @@ pub fn bare<T>(outcome: &Outcome<T>) -> (At<String>, bool, bool) {
 /// A field as written.
 pub fn told(field: &Field) -> String {
     normalised(&field.value.text)
+}
+
+/// Whether the word of a failed verdict has one of a passed verdict, its own or a usual one.
+pub fn says_passed(bad: &str, good: &str) -> bool {
+    let words = |text: &str| -> Vec<String> {
+        text.to_lowercase()
+            .split(|c: char| !c.is_alphanumeric())
+            .filter(|word| !word.is_empty())
+            .map(str::to_owned)
+            .collect()
+    };
+    let (bad, good) = (words(bad), words(good));
+    let passed = bad.windows(good.len().max(1)).any(|part| part == good)
+        || bad.iter().any(|word| PASSED.contains(&word.as_str()));
+    passed && !bad.iter().any(|word| DENIALS.contains(&word.as_str()))
 }

@@ -6,6 +6,8 @@ use crate::syntax::phrase::{Limit, Scope};
 /// Puts fields of the variant in place of fields of the parent with the same slot; other fields
 /// stay.
 pub fn overlay(parent: &mut Block, variant: &Block) {
+    // A block without a name is pointed at by its kind.
+    parent.kind.clone_from(&variant.kind);
     parent.name.clone_from(&variant.name);
     if variant.title.is_some() {
         parent.title.clone_from(&variant.title);

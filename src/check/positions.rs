@@ -5,6 +5,7 @@ use indexmap::IndexMap;
 
 use super::names::Place;
 use super::prelude::*;
+use crate::syntax::is_each;
 use crate::syntax::phrase::{Alias, Pick};
 
 /// Largest number of positions of one quantity. Each is a column of every record and a signal in
@@ -270,11 +271,6 @@ impl Checker<'_> {
 
 pub fn joined(words: &[At<String>]) -> String {
     words.iter().map(|word| word.node.as_str()).collect::<Vec<_>>().join("_")
-}
-
-/// Whether a word says that all positions are meant.
-pub fn is_each(word: &str) -> bool {
-    matches!(word, "each" | "every" | "all")
 }
 
 /// From the first word to the last.

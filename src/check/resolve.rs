@@ -1,11 +1,13 @@
 //! Resolves the names in expressions by scope: parameters, data, definitions, statistics, values of
 //! signals, and signals themselves.
 
+use super::expressions::or_idiom;
 use super::prelude::*;
 use super::scope::Reduce;
 use super::steps::after;
 use crate::catalog::{DIFFERENCES, METRICS, MetricEntry, REDUCERS, Reducer, STATISTICS, Statistic};
 use crate::source::Source;
+use crate::syntax::idiom;
 
 /// The meaning of a statistic's name in the bound of a limit, and how to limit an expression of
 /// values instead.
@@ -78,14 +80,12 @@ impl Checker<'_> {
                 let numbers = self.names.parameter_blocks.keys().chain(self.names.defines.keys());
                 let reducers = REDUCERS.iter().map(|entry| entry.name).filter(|_| of_records);
                 let known = reducers.chain(numbers.map(String::as_str));
-                self.tell(
-                    problem!(
-                        "unknown-reducer",
-                        reducer,
-                        "`{word} of` is neither a value of a signal nor a share of a number"
-                    )
-                    .suggest(word, known),
+                let problem = problem!(
+                    "unknown-reducer",
+                    reducer,
+                    "`{word} of` is neither a value of a signal nor a share of a number"
                 );
+                self.tell(or_idiom(problem, word, known));
             }
             return None;
         };
@@ -479,7 +479,8 @@ impl Checker<'_> {
         if digits > 0 {
             let (number, unit) = path.split_at(digits);
             let near = Unit::parse(unit).err().and_then(|unknown| unknown.near);
-            let help = near.map(|near| format!("did you mean `{number} {near}`?"));
+            let near = near.map(|near| format!("did you mean `{number} {near}`?"));
+            let help = near.or_else(|| idiom(unit).map(str::to_string));
             self.tell(problem!("unknown-unit", span, "`{unit}` is not a known unit").help_if(help));
             return;
         }
@@ -515,9 +516,8 @@ impl Checker<'_> {
                 known.push(format!("vehicle.{}", datum.name));
             }
         }
-        self.tell(
-            problem!("unknown-name", span, "nothing is called `{path}` here").suggest(path, &known),
-        );
+        let problem = problem!("unknown-name", span, "nothing is called `{path}` here");
+        self.tell(or_idiom(problem, path, &known));
     }
 
     /// The choice that a bare word stands for: the word itself, or the value of the choice

@@ -1,6 +1,7 @@
 //! Checks what only expressions over samples have: channels at positions, filters inside
 //! expressions, operations along the axis.
 
+use super::expressions::or_idiom;
 use super::names::Signal;
 use super::prelude::*;
 use super::steps::after;
@@ -159,7 +160,7 @@ impl Checker<'_> {
         });
         self.tell(match column {
             Some(help) => problem.help(help),
-            None => problem.suggest(name, names.signals.keys()),
+            None => or_idiom(problem, name, names.signals.keys()),
         });
     }
 

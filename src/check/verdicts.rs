@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::evaluate::is_whole;
-use super::outcomes::{bare, ends, told};
+use super::outcomes::{NEITHER, bare, ends, says_passed, told};
 use super::prelude::*;
 use crate::syntax::phrase::{Outcome, OverVerdicts, Verdict as Written};
 
@@ -11,25 +11,6 @@ use crate::syntax::phrase::{Outcome, OverVerdicts, Verdict as Written};
 const VALIDATED: [&str; 2] = ["validated", "not validated"];
 /// Words of a verdict with a name.
 const HOLDS: [&str; 2] = ["holds", "does not hold"];
-/// Words of a report for a verdict that cannot be given or is not given yet. No verdict may use
-/// them.
-pub const NEITHER: [&str; 2] = ["not assessable", "open"];
-/// Words by which a passed verdict is known: one that is failed says none of them, unless it denies
-/// it.
-const PASSED: [&str; 11] = [
-    "validated",
-    "valid",
-    "holds",
-    "met",
-    "accepted",
-    "approved",
-    "passed",
-    "pass",
-    "fulfilled",
-    "satisfied",
-    "agreement",
-];
-const DENIALS: [&str; 5] = ["not", "no", "never", "without", "nothing"];
 /// Words in `of` that stand for all quantities of a kind.
 const KINDS: [&str; 3] = ["measured", "simulated", "compared"];
 
@@ -414,21 +395,6 @@ impl Checker<'_> {
             }
         }
     }
-}
-
-/// Whether the word of a failed verdict has one of a passed verdict, its own or a usual one.
-pub fn says_passed(bad: &str, good: &str) -> bool {
-    let words = |text: &str| -> Vec<String> {
-        text.to_lowercase()
-            .split(|c: char| !c.is_alphanumeric())
-            .filter(|word| !word.is_empty())
-            .map(str::to_owned)
-            .collect()
-    };
-    let (bad, good) = (words(bad), words(good));
-    let passed = bad.windows(good.len().max(1)).any(|part| part == good)
-        || bad.iter().any(|word| PASSED.contains(&word.as_str()));
-    passed && !bad.iter().any(|word| DENIALS.contains(&word.as_str()))
 }
 
 /// The word of [`KINDS`] for a quantity.

@@ -53,11 +53,19 @@ pub struct Field {
 pub struct Comments {
     pub before: Vec<String>,
     pub beside: Option<String>,
+    /// For a field with cases: comments beside further cases, each with the index of its case.
+    pub rows: Vec<(usize, String)>,
     /// For a block: comment lines below its last field.
     pub after: Vec<String>,
 }
 
 impl Comments {
+    /// Those above the field in a form that has none beside a case.
+    pub fn above(&self) -> Vec<String> {
+        let rows = self.rows.iter().map(|(_, comment)| comment);
+        self.before.iter().chain(rows).cloned().collect()
+    }
+
     /// Puts a comment beside; one that is there goes above.
     pub fn put_beside(&mut self, comment: Option<String>) {
         if let Some(comment) = comment {

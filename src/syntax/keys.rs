@@ -36,6 +36,8 @@ pub struct Key {
     pub sort: Sort,
     /// Can occur several times (a list in YAML).
     pub many: bool,
+    /// A list of words, parted by commas; in YAML also a list.
+    pub list: bool,
     /// A text with places of the vehicle in braces.
     pub pattern: bool,
     pub about: &'static str,

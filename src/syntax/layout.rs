@@ -103,6 +103,21 @@ pub fn wrap_phrase(phrase: &str, width: usize) -> Vec<String> {
     arms(phrase).iter().flat_map(|arm| wrap_arm(arm, width)).collect()
 }
 
+/// The cases of a phrase as it is written, each `... when ...,`; the whole phrase if it has none.
+pub fn cases(text: &str) -> Vec<String> {
+    arms(&phrase(text))
+}
+
+/// The lines of a phrase with comments beside its cases: each case begins a line, with the index of
+/// its case.
+pub fn wrap_cases(phrase: &str, width: usize) -> Vec<(Option<usize>, String)> {
+    let lines = |(case, arm): (usize, &String)| {
+        let lines = wrap_arm(arm, width).into_iter().enumerate();
+        lines.map(|(line, text)| ((line == 0).then_some(case), text)).collect::<Vec<_>>()
+    };
+    arms(phrase).iter().enumerate().flat_map(lines).collect()
+}
+
 /// The cases of a phrase, each `... when ...,`; the whole phrase if it has none.
 fn arms(phrase: &str) -> Vec<String> {
     let mut arms: Vec<String> = Vec::new();

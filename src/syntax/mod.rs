@@ -4,9 +4,11 @@
 pub mod document;
 pub mod families;
 pub mod from_pest;
+mod idioms;
 pub mod keys;
 mod layout;
 mod lines;
+mod meaning;
 mod nesting;
 pub mod phrase;
 mod print_text;
@@ -16,6 +18,7 @@ mod read_yaml;
 mod remarks;
 mod rules;
 pub mod schema;
+mod spelling;
 mod split;
 
 use std::path::Path;
@@ -25,7 +28,9 @@ use crate::problem::Problems;
 use crate::source::Source;
 use document::Document;
 
+pub use idioms::idiom;
 pub use layout::in_order;
+pub use meaning::{is_each, same_meaning};
 pub use print_text::print_text;
 pub use print_yaml::print_yaml;
 pub use read_text::read_text;

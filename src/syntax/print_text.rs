@@ -4,6 +4,7 @@ use super::document::{Block, Document, Field};
 use super::keys::{self, Sort};
 use super::layout::{self, Page, WIDTH, columns};
 use super::rules::quoted;
+use super::spelling::spelled;
 
 const INDENT: usize = 2;
 
@@ -57,18 +58,27 @@ fn print_block(block: &Block, out: &mut Page) {
 fn print_field(block: &Block, field: &Field, column: usize, out: &mut Page) {
     out.comments(INDENT, &field.comments.before);
     let room = WIDTH.saturating_sub(2 * INDENT + column);
-    let lines: Vec<String> = match layout::sort(keys::of_block(block), field) {
-        Sort::Phrase => layout::wrap_phrase(&layout::phrase(&field.value.text), room),
+    let plain = |lines: Vec<String>| lines.into_iter().map(|line| (None, line)).collect();
+    let lines: Vec<(Option<usize>, String)> = match layout::sort(keys::of_block(block), field) {
+        Sort::Phrase => {
+            let phrase = spelled(&block.kind.text, &field.key.text, &field.value.text);
+            match field.comments.rows.is_empty() {
+                true => plain(layout::wrap_phrase(&phrase, room)),
+                false => layout::wrap_cases(&phrase, room),
+            }
+        }
         // Quotes take two columns. Escapes are rare and may exceed the width.
-        Sort::Text => layout::wrap_prose(&field.value.text, room.saturating_sub(2))
-            .iter()
-            .map(|piece| quoted(piece))
-            .collect(),
+        Sort::Text => {
+            let pieces = layout::wrap_prose(&field.value.text, room.saturating_sub(2));
+            plain(pieces.iter().map(|piece| quoted(piece)).collect())
+        }
     };
     let mut head = format!("{:column$}", field.key.text);
     let mut beside = field.comments.beside.as_deref();
-    for piece in lines {
-        out.line(INDENT, &format!("{head}{:INDENT$}{piece}", ""), beside.take());
+    for (case, piece) in lines {
+        let row = field.comments.rows.iter().find(|(row, _)| Some(*row) == case);
+        let comment = beside.take().or(row.map(|(_, comment)| comment.as_str()));
+        out.line(INDENT, &format!("{head}{:INDENT$}{piece}", ""), comment);
         head = " ".repeat(column);
     }
 }

@@ -3,6 +3,7 @@
 use super::document::{Block, Document, Field};
 use super::keys::{self, KINDS, Kind, Sort};
 use super::layout::{self, Page, WIDTH, columns};
+use super::spelling::spelled;
 
 /// Writes the canonical YAML. Reading it gives the same document in canonical order, and printing
 /// that gives the same YAML.
@@ -48,6 +49,14 @@ pub fn print_yaml(document: &Document) -> String {
     out.text
 }
 
+/// The text of a field; a phrase as it is spelled.
+fn value(kind: &Kind, field: &Field) -> String {
+    match layout::sort(Some(kind), field) {
+        Sort::Phrase => spelled(kind.word, &field.key.text, &field.value.text),
+        Sort::Text => field.value.text.clone(),
+    }
+}
+
 impl Page {
     /// A group whose fields are directly below it, as it has a single block.
     fn single(&mut self, kind: &Kind, block: &Block) {
@@ -81,13 +90,13 @@ impl Page {
         for fields in block.fields.chunk_by(|one, next| one.key.text == next.key.text) {
             match fields {
                 [field] => {
-                    self.comments(indent, &field.comments.before);
+                    self.comments(indent, &field.comments.above());
                     let beside = field.comments.beside.as_deref();
                     self.entry(
                         indent,
                         &field.key.text,
                         layout::sort(Some(kind), field),
-                        &field.value.text,
+                        &value(kind, field),
                         beside,
                     );
                 }
@@ -102,12 +111,12 @@ impl Page {
     }
 
     fn item(&mut self, indent: usize, kind: &Kind, field: &Field) {
-        self.comments(indent, &field.comments.before);
+        self.comments(indent, &field.comments.above());
         self.value(
             indent,
             "-",
             layout::sort(Some(kind), field),
-            &field.value.text,
+            &value(kind, field),
             field.comments.beside.as_deref(),
         );
     }

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::document::{Block, Document, Field, Text};
 use super::keys::{Key, Kind, Sort};
+use super::layout;
 use super::lines::{self, Fault};
 use super::phrase::normalised;
 use super::rules::{self, Form, Reader};
@@ -71,6 +72,17 @@ fn read_block(source: &Arc<Source>, raw: RawBlock, reader: &mut Reader<'_>) {
     };
     let word = rules::exact(written.span(&header.kind));
     let Some(kind) = reader.kind(&word.text, &word.span) else { return };
+    let beside = text[header.kind.end..].trim();
+    let fault = match reader.field_beside(kind, beside) {
+        Some(help) => {
+            let at = header.kind.end + blanks(&text[header.kind.end..])..text.trim_end().len();
+            let says = format!("the fields of `{}` stand below it", kind.word);
+            reader.problems.push(error("unexpected-text", says, &written.span(&at)).help(help));
+            header.name = None;
+            None
+        }
+        None => fault,
+    };
     match fault {
         // If the name continues with characters that a name cannot contain, the whole word is
         // reported.
@@ -96,7 +108,7 @@ fn read_block(source: &Arc<Source>, raw: RawBlock, reader: &mut Reader<'_>) {
     }
     let kind = kind.with_name(header.name.is_some());
     let title = header.title.map(|range| unquote(&[range], &written, reader));
-    let mut comments = raw.header.comments.clone();
+    let mut comments = raw.header.comments(|_| None);
     comments.after = raw.after;
     let mut block = Block {
         kind: Text { text: kind.word.to_owned(), exact: word.text == kind.word, span: word.span },
@@ -149,11 +161,17 @@ fn read_field(
         exact: key.word == &text[head.clone()],
         span: written.span(&head),
     };
+    let from = written.item.range.start + value;
     let value = match key.sort {
         Sort::Phrase => written.rest(value),
         Sort::Text => read_prose(value, written, key, reader),
     };
-    Some((key, Field { key: key_text, value, comments: written.item.comments.clone() }))
+    let case = |end: usize| {
+        let until = value.text.get(..end.checked_sub(from)?)?;
+        (key.sort == Sort::Phrase).then(|| layout::cases(until).len().saturating_sub(1))
+    };
+    let comments = written.item.comments(case);
+    Some((key, Field { key: key_text, value, comments }))
 }
 
 fn blanks(text: &str) -> usize {

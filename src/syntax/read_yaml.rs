@@ -125,7 +125,7 @@ impl YamlReader<'_> {
         let comments = Comments {
             before: self.remarks.above(),
             beside: self.remarks.beside(head.end),
-            after: Vec::new(),
+            ..Comments::default()
         };
         let nameless = name.as_ref().is_some_and(|name| name.text.trim().is_empty());
         let kind_place = if nameless { Text { span: head.clone(), ..word } } else { word };
@@ -229,7 +229,7 @@ impl YamlReader<'_> {
         let above = Comments {
             before: self.remarks.above(),
             beside: self.remarks.beside(key.span.end),
-            after: Vec::new(),
+            ..Comments::default()
         };
         match &node.value {
             Value::List(items) if known.many && !items.is_empty() => {
@@ -259,7 +259,8 @@ impl YamlReader<'_> {
         above: Comments,
         block: &mut Block,
     ) {
-        if !node.is_scalar() {
+        let list = listed(node).filter(|_| known.list);
+        if !node.is_scalar() && list.is_none() {
             let help = match known.sort {
                 Sort::Phrase => format!("for example: {}: {}", known.word, known.example),
                 Sort::Text => "expected one text".to_owned(),
@@ -268,7 +269,7 @@ impl YamlReader<'_> {
             let says = format!("`{}` is {}", known.word, node.kind_in_words());
             return self.wrong_shape(&node.span, says, &help);
         }
-        let value = text(node);
+        let value = list.unwrap_or_else(|| text(node));
         if known.sort == Sort::Phrase {
             self.check_phrase(&value);
         }
@@ -331,6 +332,13 @@ fn text(node: &Node) -> Text {
     } else {
         Text { text: node.raw.clone(), span: node.span.clone(), exact: node.exact }
     }
+}
+
+/// The items of a list as a phrase: `[right, left]` is `right, left`.
+fn listed(node: &Node) -> Option<Text> {
+    let items: Option<Vec<&str>> = node.items().iter().map(Node::scalar_text).collect();
+    let text = items.filter(|items| !items.is_empty())?.join(", ");
+    Some(Text { text, span: node.span.clone(), exact: false })
 }
 
 fn nothing(node: &Node) -> Text {

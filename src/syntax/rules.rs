@@ -160,6 +160,21 @@ impl<'a> Reader<'a> {
         near.filter(|_| of_twin.is_none())
     }
 
+    /// How a field is written that stands in the line of a block without a name: `remove
+    /// plausibility drift`.
+    pub fn field_beside(&self, kind: &'static Kind, words: &str) -> Option<String> {
+        if kind.with_name(true).named {
+            return None;
+        }
+        let words: Vec<&str> = words.split_whitespace().collect();
+        let line = match words[..] {
+            ["every", field, ..] if kind.key(field).is_some() => format!("{field} every"),
+            _ if key(kind, &words).is_some() => words.join(" "),
+            _ => return None,
+        };
+        Some(format!("write it on a line of its own, indented: `{line}`"))
+    }
+
     /// Adds a field to its block unless it is empty or already there.
     pub fn field(
         &mut self,

@@ -73,7 +73,7 @@ fn field(key: &Key) -> Value {
     let mut field = Map::new();
     field.insert("description".into(), json!(key.about));
     field.insert("examples".into(), json!([key.example]));
-    if key.many {
+    if key.many || key.list {
         field
             .insert("anyOf".into(), json!([one, { "type": "array", "items": one, "minItems": 1 }]));
     } else if let Value::Object(one) = one {

@@ -21,6 +21,8 @@ pub struct Item {
     pub unclosed: bool,
     /// Ranges between its lines, which may contain comments.
     holes: Vec<Range<usize>>,
+    /// Comments beside its further lines, each with where its line ends.
+    rows: Vec<(usize, String)>,
 }
 
 #[derive(Debug)]
@@ -176,8 +178,7 @@ impl Splitter<'_> {
         }
     }
 
-    /// Adds a continuation line to the last field. One comment can stay next to the field, others
-    /// move above it.
+    /// Adds a continuation line to the last field.
     fn carry_on(&mut self, line: Rest) {
         let before = self.waiting();
         let Some(field) = self.blocks.last_mut().and_then(|block| block.fields.last_mut()) else {
@@ -187,11 +188,7 @@ impl Splitter<'_> {
         field.range.end = line.body.end;
         field.unclosed |= line.unclosed;
         field.comments.before.extend(before);
-        if field.comments.beside.is_none() {
-            field.comments.beside = line.beside;
-        } else {
-            field.comments.before.extend(line.beside);
-        }
+        field.rows.extend(line.beside.map(|comment| (field.range.end, comment)));
     }
 
     /// Indented comments at the end of a block belong to it and not to the next block.
@@ -241,8 +238,25 @@ impl RawBlock {
 
 impl Item {
     fn new(line: Rest, before: Vec<String>) -> Self {
-        let comments = Comments { before, beside: line.beside, after: Vec::new() };
-        Self { range: line.body, comments, unclosed: line.unclosed, holes: Vec::new() }
+        let comments = Comments { before, beside: line.beside, ..Comments::default() };
+        let (holes, rows) = (Vec::new(), Vec::new());
+        Self { range: line.body, comments, unclosed: line.unclosed, holes, rows }
+    }
+
+    /// The comments with those of further lines: of cases, each at its case; of others, one next to
+    /// the field and the rest above it. `case` is the case at a place in the source.
+    pub fn comments(&self, case: impl Fn(usize) -> Option<usize>) -> Comments {
+        let mut all = self.comments.clone();
+        for (end, comment) in &self.rows {
+            match case(*end) {
+                Some(case) if case > 0 && all.rows.iter().all(|(row, _)| *row != case) => {
+                    all.rows.push((case, comment.clone()))
+                }
+                _ if all.beside.is_none() => all.beside = Some(comment.clone()),
+                _ => all.before.push(comment.clone()),
+            }
+        }
+        all
     }
 
     /// The text with comments replaced by blanks, so that every byte keeps its place in the source.

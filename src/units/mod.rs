@@ -33,6 +33,12 @@ impl Unit {
         parse::unit(text)
     }
 
+    /// Help for a number whose unit is of another dimension than the one wanted, and begins like a
+    /// unit of that: `0.65 g` where an acceleration is wanted.
+    pub fn meant(number: &str, wanted: Dimension) -> Option<String> {
+        parse::meant(number, wanted)
+    }
+
     /// The unit of a dimensionless number.
     pub fn one() -> Self {
         Self { text: "-".into(), factor: 1.0, dimension: Dimension::ONE }

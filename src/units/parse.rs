@@ -1,7 +1,7 @@
 //! Reads compound units: products by space, `*` or `·`, one or more `/`, powers as `^2`, `²`, `^-1`,
 //! `m2`, `^1.5` or `^(1/3)`.
 
-use super::{Dimension, SYMBOLS, Unit, UnknownUnit, raised};
+use super::{Dimension, SYMBOLS, Symbol, Unit, UnknownUnit, raised};
 
 pub(super) fn unit(text: &str) -> Result<Unit, UnknownUnit> {
     let mut factor = 1.0;
@@ -58,8 +58,31 @@ fn near(word: &str) -> Option<&'static str> {
     let symbols = || SYMBOLS.iter().map(|known| known.symbol);
     let same = symbols().find(|symbol| symbol.eq_ignore_ascii_case(word));
     same.or_else(|| {
-        symbols().find(|symbol| symbol.len() > 1 && strsim::levenshtein(symbol, word) == 1)
+        // Of two letters, one is half of the word: `dB` is not a slip of `dm`.
+        symbols().find(|symbol| {
+            symbol.len() > 1 && word.len() > 2 && strsim::levenshtein(symbol, word) == 1
+        })
     })
+}
+
+/// The unit of a dimension that a number with another unit probably has: `0.65 gn` of an
+/// acceleration for `0.65 g`, in words of help.
+pub(super) fn meant(number: &str, wanted: Dimension) -> Option<String> {
+    let (digits, written) = number.split_at(super::number_end(number));
+    let written = written.trim();
+    let own = SYMBOLS.iter().find(|known| known.symbol == written)?;
+    // A metre is not a slip of `mN`, though its symbol is a prefix.
+    let prefix = ["m", "h", "T"].contains(&written);
+    let begins = |symbol: &Symbol| {
+        let same = symbol.symbol.eq_ignore_ascii_case(written);
+        same || !prefix && symbol.symbol.starts_with(written)
+    };
+    let meant = SYMBOLS.iter().find(|known| known.dimension == wanted && begins(known))?;
+    let (name, symbol) = (own.name, meant.symbol);
+    Some(format!(
+        "`{written}` is the {name}; the {} is `{symbol}`: `{digits} {symbol}`",
+        meant.name
+    ))
 }
 
 /// `s^2`, `s²`, `s2`, `m^-1` into symbol and exponent.
@@ -140,6 +163,19 @@ mod tests {
             ["m^0.333", "m^(1/7)", "m^(1/0)", "m^(1/3", "m^1/3)", "m^nan", "m^9.5", "m^(/3)"]
         {
             assert!(unit(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_unit_of_another_dimension_is_told_where_it_begins_alike() {
+        let dimension = |text: &str| unit(text).expect("a unit").dimension;
+        let help = |number: &str, wanted: &str| meant(number, dimension(wanted));
+        let told = "`g` is the gram; the standard acceleration of gravity is `gn`: `0.65 gn`";
+        assert_eq!(help("0.65 g", "m/s^2").as_deref(), Some(told));
+        assert!(help("3 kg", "kN").is_some_and(|help| help.ends_with("`3 kgf`")));
+        assert!(help("3 T", "kg").is_some_and(|help| help.ends_with("`3 t`")));
+        for (number, wanted) in [("3 m", "kN"), ("3 mm", "kN"), ("3", "kN"), ("3 xyz", "kN")] {
+            assert_eq!(help(number, wanted), None, "{number}");
         }
     }
 

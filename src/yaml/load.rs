@@ -275,13 +275,23 @@ impl<'a> Loader<'a> {
         let to_tab = text.get(at..).and_then(|rest| rest.find('\t')).filter(|_| tab);
         let at = at + to_tab.unwrap_or(0);
         let (says, help) = in_words(kind);
-        let help = self.begins_deeper(kind, at).or_else(|| help.map(str::to_string));
+        let help = self
+            .begins_deeper(kind, at)
+            .or_else(|| self.begins_with_sign(at))
+            .or_else(|| help.map(str::to_string));
         let code = match kind {
             _ if tab => "tab-indentation",
             ErrorKind::RecursionLimitExceeded => "yaml-too-deep",
             _ => "yaml-syntax",
         };
         error(code, says, &self.source.span(at..at)).help_if(help)
+    }
+
+    /// A value such as `|p0.15|`, which to YAML begins a text of several lines.
+    fn begins_with_sign(&self, at: usize) -> Option<String> {
+        let value = self.source.text.get(at..)?.lines().next()?.trim_end();
+        let sign = value.chars().next().filter(|sign| matches!(sign, '|' | '>'))?;
+        Some(format!("quote a value that begins with `{sign}`: `\"{value}\"`"))
     }
 
     /// `key: value` below a key that has its value already, and deeper: to the parser it goes on

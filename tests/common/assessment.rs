@@ -79,6 +79,7 @@ fn quantity(found: &Certification) -> QuantityResult {
         ..statistics[0].clone()
     });
     QuantityResult {
+        outcome: None,
         id: "SigmaY".into(),
         title: "Sum of guiding forces".into(),
         symbol: "ΣY_max".into(),

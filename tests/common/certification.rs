@@ -215,6 +215,7 @@ fn application() -> Vec<DomainResult> {
 /// A certification without anything in it.
 pub fn empty() -> Certification {
     Certification {
+        outcome: None,
         fishplate: THIS.into(),
         format: FORMAT,
         verdict_text: "not assessable".into(),
@@ -529,6 +530,7 @@ fn metric(sections: &[SectionResult], noise: &mut Noise) -> QuantityResult {
         })
         .collect();
     QuantityResult {
+        outcome: None,
         from: None,
         among: None,
         repeats: false,

@@ -125,6 +125,7 @@ pub fn certification() -> Certification {
     let quantities: Vec<QuantityResult> =
         MADE.iter().map(|made| quantity(made, &sections, &mut noise)).collect();
     Certification {
+        outcome: None,
         fishplate: THIS.into(),
         format: FORMAT,
         verdict_text: "not validated".into(),
@@ -311,6 +312,7 @@ fn quantity(made: &Made, sections: &[SectionResult], noise: &mut Noise) -> Quant
     let holds =
         (!missing).then(|| statistics.iter().all(|statistic| statistic.holds == Some(true)));
     QuantityResult {
+        outcome: None,
         from: None,
         among: None,
         repeats: false,

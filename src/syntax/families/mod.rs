@@ -43,14 +43,14 @@ pub struct Known {
 }
 
 /// Expands the families of a document. `before` is the merged document of its ancestors, `known`
-/// contains their families; those of the document are added to it. Returns whether every family
-/// could be expanded.
+/// contains their families; those of the document are added to it. Also returns the names, as written, of the blocks
+/// that are missing because a family could not be expanded.
 pub fn expand(
     document: &Document,
     before: Option<&Document>,
     known: &mut Vec<Known>,
     problems: &mut Problems,
-) -> (Document, bool) {
+) -> (Document, Vec<String>) {
     let mut places = Places::new();
     let blocks = before.into_iter().chain([document]).flat_map(|document| &document.blocks);
     for block in blocks.filter(|block| block.kind.text == "place") {
@@ -72,13 +72,13 @@ pub fn expand(
         seen: BTreeMap::new(),
         count: 0,
         bytes: 0,
-        sound: true,
+        lost: Vec::new(),
     };
     for block in &document.blocks {
         writer.block(block);
     }
-    let (blocks, sound) = (writer.blocks, writer.sound);
-    (Document { blocks, ..document.clone() }, sound)
+    let (blocks, lost) = (writer.blocks, writer.lost);
+    (Document { blocks, ..document.clone() }, lost)
 }
 
 /// The place with a name in the singular or plural: `wheelset`, `wheelsets`, `axle boxes`,
@@ -104,7 +104,7 @@ struct Writer<'a> {
     seen: BTreeMap<(String, String), (Span, bool)>,
     count: usize,
     bytes: usize,
-    sound: bool,
+    lost: Vec<String>,
 }
 
 impl Writer<'_> {
@@ -120,8 +120,10 @@ impl Writer<'_> {
             return self.family(kind, block, &each, None);
         }
         if !name.contains('{') {
-            self.no_braces(kind, block);
-            self.add(block.clone(), false);
+            match self.no_braces(kind, block) {
+                true => self.add(block.clone(), false),
+                false => self.lost.push(block.own_name()),
+            }
             return;
         }
         if let Some(family) = of_kind().find(|family| family.name == name).cloned() {
@@ -143,7 +145,7 @@ impl Writer<'_> {
             )
             .help(help),
         );
-        self.sound = false;
+        self.lost.push(block.own_name());
     }
 
     fn parent_has(&self, kind: &str, name: &str) -> bool {
@@ -152,8 +154,9 @@ impl Writer<'_> {
         })
     }
 
-    /// Reports braces in a block that is not a family.
-    fn no_braces(&mut self, kind: &Kind, block: &Block) {
+    /// Whether a block that is not a family has no braces; they are reported.
+    fn no_braces(&mut self, kind: &Kind, block: &Block) -> bool {
+        let mut none = true;
         for field in block
             .fields
             .iter()
@@ -182,8 +185,9 @@ impl Writer<'_> {
                 )
                 .help(help),
             );
-            self.sound = false;
+            none = false;
         }
+        none
     }
 
     /// Adds a block unless there is one with its name.
@@ -205,7 +209,9 @@ impl Writer<'_> {
 
     /// Expands a family; with `only`, just the members with these names.
     fn family(&mut self, kind: &Kind, block: &Block, each: &[Field], only: Option<&[String]>) {
-        self.sound &= self.expanded(kind, block, each, only).is_some();
+        if self.expanded(kind, block, each, only).is_none() {
+            self.lost.push(block.own_name());
+        }
     }
 
     /// Nothing where the family could not be expanded.

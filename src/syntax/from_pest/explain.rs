@@ -7,6 +7,7 @@ use pest::error::{Error, ErrorVariant, InputLocation};
 use super::{Rule, is_keyword};
 use crate::problem::{Problem, error, problem};
 use crate::syntax::document::Text;
+use crate::syntax::{idiom, phrase::normalised};
 use crate::units::Unit;
 
 pub(super) fn twice(what: &str, text: &Text, range: Range<usize>) -> Problem {
@@ -67,27 +68,43 @@ pub(super) fn syntax(rule: Rule, failed: &Error<Rule>, text: &Text) -> Problem {
     if odd_blank.is_some() {
         return problem.help("write an ordinary space");
     }
-    if rule == Rule::expression && joins_places(before) {
-        return problem
-            .help("in an expression, write places without `and`: `Y at wheelset 1 side R`");
-    }
-    if rule == Rule::limit
-        && ["+", "-", "*", "/"].contains(&found)
-        && before.split_whitespace().count() == 1
-    {
-        return problem.help("write an estimate of several statistics in parentheses: `limit (mean + 3 * std) 60 kN`");
-    }
-    if rule == Rule::limit
-        && before.split_whitespace().count() == 2
-        && found.starts_with(|c: char| c.is_ascii_digit())
-    {
-        return problem.help("a statistic is one word, such as `mean`, `std` (standard deviation) or `p95`: `limit std 5 kN`");
+    if let Some(help) = advice(rule, before, found, text) {
+        return problem.help(help);
     }
     match expected.as_slice() {
         [] => problem,
         [..] if expected.len() <= 6 => problem.help(format!("expected {}", one_of(&expected))),
         _ => problem.help(format!("expected {}, ...", expected[..6].join(", "))),
     }
+}
+
+/// What is probably meant by a text with an error, or how it is written.
+fn advice(rule: Rule, before: &str, found: &str, text: &Text) -> Option<String> {
+    const SIGNS: [&str; 5] = ["+", "-", "−", "*", "/"];
+    let words = before.split_whitespace().count();
+    if rule == Rule::expression && joins_places(before) {
+        return Some(
+            "in an expression, write places without `and`: `Y at wheelset 1 side R`".into(),
+        );
+    }
+    if rule == Rule::of_places && (SIGNS.contains(&found) || ["|", "("].contains(&found)) {
+        let is = normalised(&text.text);
+        return Some(format!(
+            "`of` names one signal; declare what is computed: `signal NAME` with `is  {is}`"
+        ));
+    }
+    if let Some(step) = step_after_through(before) {
+        return Some(format!(
+            "after `through` stands the name of a filter: declare `filter NAME` with `step  {step} ...`, and write `through NAME`"
+        ));
+    }
+    if rule == Rule::limit && SIGNS.contains(&found) && words == 1 {
+        return Some("write an estimate of several statistics in parentheses: `limit (mean + 3 * std) 60 kN`".into());
+    }
+    if rule == Rule::limit && words == 2 && found.starts_with(|c: char| c.is_ascii_digit()) {
+        return Some("a statistic is one word, such as `mean`, `std` (standard deviation) or `p95`: `limit std 5 kN`".into());
+    }
+    None
 }
 
 /// A decimal comma, such as `0,5`: a comma between two digits where no comma is possible.
@@ -135,6 +152,7 @@ fn unknown_unit(before: &str, found: &str, at: usize, text: &Text) -> Option<Pro
     );
     Some(match unknown.near.filter(|_| !is_name(found)) {
         Some(near) => problem.meant(near),
+        None if let Some(help) = idiom(found) => problem.help(help),
         None => {
             let product = format!("{last} * {}", up_to_keyword(&text.text[at..]));
             problem.help(format!("a product is written with its sign: `{product}`; units are written like kN, m/s^2, km/h, mrad"))
@@ -179,6 +197,15 @@ fn up_to_keyword(text: &str) -> &str {
 fn joins_places(before: &str) -> bool {
     let words: Vec<&str> = before.split_whitespace().collect();
     matches!(words.as_slice(), [.., "and", _]) && words.contains(&"at")
+}
+
+/// The word of a filter step that is written where the name of a filter is expected: a text that
+/// ends in `through low-pass`, before its number.
+fn step_after_through(before: &str) -> Option<&str> {
+    let (_, step) = before.rsplit_once("through ")?;
+    let step = step.trim();
+    let of_step = |c: char| c.is_ascii_alphabetic() || matches!(c, '-' | ' ');
+    (step.contains(['-', ' ']) && step.chars().all(of_step)).then_some(step)
 }
 
 fn after_blanks(text: &str) -> &str {

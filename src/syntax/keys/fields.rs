@@ -3,15 +3,19 @@
 use super::{EACH, Key, OPTIONAL as OPTIONAL_WORD, Sort};
 
 pub(super) const fn text(word: &'static str, about: &'static str, example: &'static str) -> Key {
-    Key { word, sort: Sort::Text, many: false, pattern: false, about, example }
+    Key { word, sort: Sort::Text, many: false, list: false, pattern: false, about, example }
 }
 
 pub(super) const fn phrase(word: &'static str, about: &'static str, example: &'static str) -> Key {
-    Key { word, sort: Sort::Phrase, many: false, pattern: false, about, example }
+    Key { word, sort: Sort::Phrase, many: false, list: false, pattern: false, about, example }
 }
 
 pub(super) const fn many(key: Key) -> Key {
     Key { many: true, ..key }
+}
+
+pub(super) const fn list(key: Key) -> Key {
+    Key { list: true, ..key }
 }
 
 pub(super) const fn pattern(key: Key) -> Key {
@@ -37,11 +41,11 @@ pub(super) const UNCONFIRMED: Key = text(
     "Why its number is not from a checked source. Until the campaign confirms it, the report prints \"to be confirmed\" beside it, \"against the standard\" if the protocol has a `source`, and the verdict is provisional.",
     "Read in a secondary source; the standard was not to hand.",
 );
-pub(super) const WORDS: Key = phrase(
+pub(super) const WORDS: Key = list(phrase(
     "words",
     "The two words of the verdict: the word if it holds, and the word if it does not.",
     "accepted, not accepted",
-);
+));
 pub(super) const NOTE: Key = many(text(
     "note",
     "A remark printed with the rule.",

@@ -1,7 +1,7 @@
 //! The table of blocks and fields.
 
 use super::fields::{
-    CLAUSE, FOR_EACH, NOTE, OPTIONAL, SOURCE, UNCONFIRMED, WORDS, many, pattern, phrase, text,
+    CLAUSE, FOR_EACH, NOTE, OPTIONAL, SOURCE, UNCONFIRMED, WORDS, list, many, pattern, phrase, text,
 };
 use super::{Key, Kind};
 
@@ -122,7 +122,11 @@ pub const KINDS: &[Kind] = &[
                 "20 Hz",
             ),
             OPTIONAL,
-            phrase("one of", "The possible words of a choice.", "oriented, signed, magnitudes"),
+            list(phrase(
+                "one of",
+                "The possible words of a choice.",
+                "oriented, signed, magnitudes",
+            )),
             phrase("range", "The smallest and the largest allowed value.", "10 Hz to 40 Hz"),
             phrase(
                 "at",
@@ -140,7 +144,7 @@ pub const KINDS: &[Kind] = &[
         "places",
         "A set of positions on the vehicle at which channels are measured.",
         &[
-            phrase("members", "The positions, as they appear in channel names.", "R, L"),
+            list(phrase("members", "The positions, as they appear in channel names.", "R, L")),
             many(phrase(
                 "alias",
                 "A name for a position that depends on the section.",
@@ -156,11 +160,11 @@ pub const KINDS: &[Kind] = &[
         &[
             FOR_EACH,
             phrase("in", "The unit of a number.", "kN"),
-            phrase(
+            list(phrase(
                 "one of",
                 "The possible words of a choice; `any word` where the protocol does not list them.",
                 "passenger, locomotive, freight",
-            ),
+            )),
             phrase(
                 "key",
                 "The key in the vehicle file, if it differs from the name.",
@@ -187,11 +191,11 @@ pub const KINDS: &[Kind] = &[
         &[
             FOR_EACH,
             phrase("in", "The unit of a number.", "m"),
-            phrase(
+            list(phrase(
                 "one of",
                 "The possible words of a choice; `zones` stands for the names of all zones, `any word` for words that the protocol does not list.",
                 "right, left, straight",
-            ),
+            )),
             text(
                 "column",
                 "The column header without the unit, if it differs from the name with blanks for underscores.",
@@ -384,11 +388,11 @@ pub const KINDS: &[Kind] = &[
                 "With `over sections` and `near`: between which numbers the slope of the values found over those expected must lie.",
                 "0.9 to 1.1",
             ),
-            phrase(
+            list(phrase(
                 "distinct",
                 "In place of a condition: signals that must not have the same samples.",
                 "channels, sections, sides",
-            ),
+            )),
             phrase(
                 "exchanged",
                 "In place of a condition: from which correlation on a measured record or channel is reported that agrees with the simulation of another section or channel, and by how much more than with its own; and from which one on two measurements are alike.",
@@ -661,11 +665,11 @@ pub const KINDS: &[Kind] = &[
         "A verdict with a name: from limits of quantities, from other verdicts, or by a person.",
         &[
             FOR_EACH,
-            phrase(
+            list(phrase(
                 "of",
                 "The quantities whose limits count: names, or `measured`, `simulated` or `compared` for all of a kind. Without this field, all quantities.",
                 "SigmaY, YQ, Q",
-            ),
+            )),
             phrase(
                 "holds",
                 "`when every limit holds`, `when at least N quantities hold`, or a rule over other verdicts.",
