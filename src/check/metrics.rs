@@ -434,7 +434,9 @@ impl Checker<'_> {
         let Some(other) = not_of_both(signal) else { return Some(()) };
         let says = "samples of both sides can only be combined with numbers: other signals and filters have other samples";
         let help = match other.kind {
-            Kind::Filtered(..) => "write it in the field `filter` of the quantity: both signals pass it before they are combined",
+            Kind::Filtered(..) => {
+                "write it in the field `filter` of the quantity: both signals pass it before they are combined"
+            }
             _ => "`shifted` can only be applied to `simulated` and `measured`",
         };
         self.refuse(error("mixed-records", says, other).help(help))
