@@ -53,6 +53,7 @@ pub const SHIPPED: &[Shipped] = shipped![
     "code-benchmark",
     "code-benchmark-reference",
     "stationary-sway",
+    "en12299-mean-comfort",
 ];
 
 /// Shipped texts without quantities, whose rules protocols share.

@@ -9,6 +9,7 @@ mod common {
     pub mod texts;
 }
 
+mod comfort;
 mod domain;
 mod estimates;
 mod metrics;
