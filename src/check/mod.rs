@@ -31,6 +31,7 @@ mod near;
 mod outcomes;
 mod overlap;
 mod overlay;
+mod overrides;
 mod parameters;
 pub mod plan;
 mod plausibility;
@@ -62,8 +63,9 @@ use std::collections::BTreeSet;
 
 use indexmap::IndexMap;
 
+pub use overrides::{Override, Overrides};
+
 use crate::problem::{Problem, Problems, error, problem};
-use crate::result::Confirmation;
 use crate::source::{Span, Spanned};
 use crate::syntax::document::{Block, Document, Field, Text};
 use crate::syntax::from_pest;
@@ -71,48 +73,8 @@ use crate::units::Dimension;
 use finish::{in_reading_order, name_after_number, rule_count, set_outside, written_rules};
 use groups::Grouped;
 use names::Names;
-use plan::{Axis, Expr, NamedFilter, Parameter, Plan, SetBy, StatedValues, Step};
+use plan::{Axis, Expr, NamedFilter, Parameter, Plan, StatedValues, Step};
 use scope::Scope;
-
-/// A parameter set from outside the protocol.
-#[derive(Clone, Debug)]
-pub struct Override {
-    pub text: Text,
-    pub set_by: SetBy,
-}
-
-/// Parameters set from outside, by name, and the values that were confirmed.
-#[derive(Clone, Debug, Default)]
-pub struct Overrides {
-    parameters: IndexMap<String, Override>,
-    pub confirmed: Vec<Confirmation>,
-}
-
-impl Overrides {
-    pub fn new() -> Self {
-        Self::default()
-    }
-}
-
-impl std::ops::Deref for Overrides {
-    type Target = IndexMap<String, Override>;
-
-    fn deref(&self) -> &Self::Target {
-        &self.parameters
-    }
-}
-
-impl std::ops::DerefMut for Overrides {
-    fn deref_mut(&mut self) -> &mut Self::Target {
-        &mut self.parameters
-    }
-}
-
-impl FromIterator<(String, Override)> for Overrides {
-    fn from_iter<T: IntoIterator<Item = (String, Override)>>(all: T) -> Self {
-        Self { parameters: all.into_iter().collect(), confirmed: Vec::new() }
-    }
-}
 
 /// Largest depth of nested expressions, definitions and signals together. The stack is large enough
 /// for it.

@@ -1,7 +1,7 @@
 //! Resolves the names in expressions by scope: parameters, data, definitions, statistics, values of
 //! signals, and signals themselves.
 
-use super::expressions::or_idiom;
+use super::functions::or_idiom;
 use super::prelude::*;
 use super::scope::Reduce;
 use super::steps::after;

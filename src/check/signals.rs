@@ -1,7 +1,7 @@
 //! Checks what only expressions over samples have: channels at positions, filters inside
 //! expressions, operations along the axis.
 
-use super::expressions::or_idiom;
+use super::functions::or_idiom;
 use super::names::Signal;
 use super::prelude::*;
 use super::steps::after;

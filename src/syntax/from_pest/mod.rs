@@ -5,6 +5,7 @@ mod depth;
 mod explain;
 mod tree;
 mod units;
+mod verdicts;
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -15,11 +16,13 @@ use pest::iterators::Pair;
 
 use super::document::Text;
 use super::phrase::{
-    Alias, At, Domain, Limit, Minimum, Node, Number, OfPlaces, Outcome, OverVerdicts, Phrase, Pick,
-    Report, Scope, Step, Verdict, normalised,
+    Alias, At, Domain, Limit, Minimum, Node, Number, OfPlaces, Phrase, Pick, Report, Scope, Step,
+    normalised,
 };
 use crate::problem::Problems;
 use tree::{cases, either, estimate, pick, step, sum};
+
+pub use verdicts::{outcome, outcome_of_verdict, verdict};
 
 #[derive(pest_derive::Parser)]
 #[grammar = "syntax/phrase.pest"]
@@ -165,85 +168,6 @@ fn scope(part: Parsed) -> Option<Scope> {
         }
     }
     Some(scope)
-}
-
-pub fn verdict(text: &Text, problems: &mut Problems) -> Option<Verdict> {
-    verdict_rule(parsed(Rule::verdict, text, problems)?.next()?)
-}
-
-/// An outcome of a quantity: `good: holds when mean <= 2`.
-pub fn outcome(text: &Text, problems: &mut Problems) -> Option<Outcome<Phrase>> {
-    outcome_when(parsed(Rule::outcome, text, problems)?, either)
-}
-
-/// An outcome of a verdict: `restricted: holds when at least 11 quantities hold`.
-pub fn outcome_of_verdict(text: &Text, problems: &mut Problems) -> Option<Outcome<Verdict>> {
-    outcome_when(parsed(Rule::outcome_of_verdict, text, problems)?, verdict_rule)
-}
-
-fn outcome_when<T>(mut inner: Parsed, when: fn(Parsed) -> Option<T>) -> Option<Outcome<T>> {
-    let word = inner.next()?;
-    let word = word.at(normalised(word.written().trim().trim_matches('"')));
-    let holds = inner.next()?.rule == Rule::outcome_holds;
-    let when = match inner.next() {
-        Some(rule) => Some(when(rule)?),
-        None => None,
-    };
-    Some(Outcome { word, holds, when })
-}
-
-fn verdict_rule(inner: Parsed) -> Option<Verdict> {
-    match inner.rule {
-        Rule::every_limit => return Some(Verdict::EveryLimit),
-        Rule::some_verdict => return Some(Verdict::Over(over_verdicts(inner)?)),
-        _ => {}
-    }
-    let mut inner = inner.filter(|part| part.rule != Rule::at_least);
-    let count = sum(inner.next()?)?;
-    Some(Verdict::AtLeast { count, of_limits: inner.next()?.rule == Rule::of_limits })
-}
-
-fn over_verdicts(part: Parsed) -> Option<OverVerdicts> {
-    let rule = part.rule;
-    let mut inner = part.peekable();
-    match rule {
-        Rule::some_verdict | Rule::all_verdicts => {
-            let mut all = inner.map(over_verdicts).collect::<Option<Vec<_>>>()?;
-            match (all.len(), rule) {
-                (1, _) => all.pop(),
-                (_, Rule::some_verdict) => Some(OverVerdicts::Any(all)),
-                _ => Some(OverVerdicts::All(all)),
-            }
-        }
-        Rule::one_verdict => {
-            let not = inner.next_if(|part| part.rule == Rule::not).is_some();
-            let over = over_verdicts(inner.next()?)?;
-            Some(if not { OverVerdicts::Not(Box::new(over)) } else { over })
-        }
-        Rule::enough_verdicts => {
-            let mut inner = inner.filter(|part| !matches!(part.rule, Rule::at_least | Rule::of));
-            let count = inner.next()?;
-            let node = match count.rule {
-                Rule::number => {
-                    Node::Number(Number { value: count.written().parse().ok()?, unit: None })
-                }
-                _ => Node::Path(count.written().to_string()),
-            };
-            Some(OverVerdicts::AtLeast {
-                count: count.at(node),
-                of: inner.map(|name| name.named()).collect(),
-            })
-        }
-        _ => {
-            let name = inner.next()?.named();
-            let Some(next) = inner.next() else { return Some(OverVerdicts::Holds(name)) };
-            let over = match inner.next() {
-                Some(other) => OverVerdicts::Same(name, other.named()),
-                None => OverVerdicts::Holds(name),
-            };
-            Some(if next.rule == Rule::is { over } else { OverVerdicts::Not(Box::new(over)) })
-        }
-    }
 }
 
 /// Whether a word is one of the language, so that no part of a protocol can be called by it.
