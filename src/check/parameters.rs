@@ -72,7 +72,11 @@ impl Checker<'_> {
         let value_words = normalised(&source.text);
         let range = match (block.field("range"), &ty) {
             (Some(range), Type::Number(dimension)) => {
-                self.range_ends(name, *dimension, range, None)
+                // What is wrong with it was told when the value was looked at.
+                let told = self.problems.0.len();
+                let ends = self.range_ends(name, *dimension, range, None);
+                self.problems.0.truncate(told);
+                ends
             }
             _ => None,
         };

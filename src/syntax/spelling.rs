@@ -196,7 +196,7 @@ impl Speller {
         });
         let closes = sign == "|" && self.value && self.bars.last().is_some_and(|open| *open > 0);
         let glued = match sign {
-            ")" | "," | ";" | "^" | "²" | "³" => true,
+            ")" | "," | ";" | ":" | "^" | "²" | "³" => true,
             "|" => closes,
             // A call stands at its parenthesis.
             "(" => self.value && self.before == Sort::Word && !token.apart,

@@ -84,7 +84,8 @@ fn advice(rule: Rule, before: &str, found: &str, text: &Text) -> Option<String> 
     let words = before.split_whitespace().count();
     if rule == Rule::expression && joins_places(before) {
         return Some(
-            "in an expression, write places without `and`: `Y at wheelset 1 side R`".into(),
+            "in an expression, write places without `and`: `NAME at PLACE MEMBER PLACE MEMBER`"
+                .into(),
         );
     }
     if rule == Rule::of_places && (SIGNS.contains(&found) || ["|", "("].contains(&found)) {
