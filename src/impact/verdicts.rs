@@ -166,11 +166,11 @@ impl<'a> Verdicts<'a> {
         if self.frame.parts.iter().zip(&self.frame.cover.refused).any(refused) {
             return Found::Refused;
         }
-        self.from_parts(mask).map_or_else(|| self.whole(mask), Found::Verdict)
+        self.put_together(mask).map_or_else(|| self.whole(mask), Found::Verdict)
     }
 
     /// `None` where a part was not seen under it.
-    fn from_parts(&mut self, mask: Mask) -> Option<Outcome> {
+    fn put_together(&mut self, mask: Mask) -> Option<Outcome> {
         let (frame, last) = (self.frame, self.frame.parts.len() - 1);
         let state = |at: usize| self.tables[at].under.get(&(mask & frame.parts[at])).copied();
         let (sections, decides) = (state(0)?, state(last)?);

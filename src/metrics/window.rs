@@ -276,8 +276,9 @@ fn extremes(signal: &[f64], windows: &[Range<usize>]) -> Vec<(f64, f64)> {
     let mut next = 0;
     let mut ends = Vec::with_capacity(windows.len());
     for window in windows {
-        for at in next.max(window.start)..window.end {
-            let value = if signal[at].is_finite() { signal[at] } else { f64::NAN };
+        let new = next.max(window.start)..window.end;
+        for (at, sample) in new.clone().zip(signal.get(new).unwrap_or_default()) {
+            let value = if sample.is_finite() { *sample } else { f64::NAN };
             for (queue, value) in queues.iter_mut().zip([value, -value]) {
                 // What is not a number stays until it leaves the window.
                 while queue.back().is_some_and(|&(_, back): &(usize, f64)| {

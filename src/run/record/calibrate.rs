@@ -209,7 +209,7 @@ fn arithmetic(operator: Operator, left: Follows, right: Follows) -> Option<Line>
     use Follows::{By, Number};
     let sum = |a: Line, b: Line, sign: f64| {
         (a.factor == b.factor)
-            .then(|| Line { factor: a.factor, offset: a.offset + sign * b.offset })
+            .then_some(Line { factor: a.factor, offset: a.offset + sign * b.offset })
     };
     // The number itself is not scaled: its share of the scaled sum is taken back.
     let kept = |line: Line, number: f64| Line {
