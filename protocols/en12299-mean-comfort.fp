@@ -7,14 +7,14 @@ protocol en12299-mean-comfort "Mean comfort of passengers in the manner of EN 12
               "2631-1:1997, Table A.1; Wb: as ISO 8041-1 writes it, numbers from memory"
   author      "Fishplate"
   scope       "The index of the lateral and the vertical direction at floor level, of each section of five"
-              "minutes: of the measurement, of the simulation, and their difference. The standard gives a scale"
-              "and no limit; the limits are the user's."
+              "minutes: of the measurement, of the simulation, and their difference. The standard gives a"
+              "scale and no limit; the limits are the user's."
   axis        time in s
   time        time in s
   leaves out  "The longitudinal direction, which enters the index of the standard as the other two."
   leaves out  "Positions of passengers other than the floor above the running gear."
-  note        "An index below 1.5 is called very comfortable, below 2.5 comfortable, below 3.5 medium, below 4.5"
-              "uncomfortable; from memory."
+  note        "An index below 1.5 is called very comfortable, below 2.5 comfortable, below 3.5 medium, below"
+              "4.5 uncomfortable; from memory."
 
 parameter vertical_weighting "Weighting of the vertical acceleration"
   default      Wb
@@ -62,7 +62,7 @@ filter Wb "Vertical weighting"
 filter Wk "Vertical weighting of ISO 2631-1"
   step    BAND
   step    transfer function poles 12.5 Hz quality 0.63 zero 12.5 Hz
-  step    transfer function poles 3.35 Hz quality 0.91 zeros 2.37 Hz quality 0.91, gain (2.37^2 / 3.35^2)
+  step    transfer function poles 3.35 Hz quality 0.91 zeros 2.37 Hz quality 0.91, gain (2.37^2/3.35^2)
   source  "ISO 2631-1:1997, Table A.1"
 
 filter VERTICAL
@@ -73,32 +73,32 @@ filter LATERAL_5S
   step  Wd
   step  sliding rms 5 s every 5 s
 
+define index
+  is  6 * hypot(p95, p95 of (ay through LATERAL_5S)) / (1 m/s^2)
+
 check duration "Five minutes"
   require    length >= 300 s
   otherwise  note
 
-define index
-  is  6 * hypot(p95, p95 of (ay through LATERAL_5S)) / (1 m/s^2)
+sections
+  percentiles  linear
 
 quantity index_{side} "Mean comfort index, {side}"
   for each  side in measured, simulated
-  from      {side}
   of        az
   filter    VERTICAL, then sliding rms 5 s every 5 s
+  from      {side}
   value     index
-  in        -
   limit     each largest_index
+  in        -
 
 quantity index_difference "Mean comfort index, simulated less measured"
   of          az
   filter      VERTICAL, then sliding rms 5 s every 5 s
   value       index
   difference  simulated - measured
-  in          -
   limit       each largest_difference
-
-sections
-  percentiles  linear
+  in          -
 
 verdict comfort "Comfort of the measured vehicle"
   of     measured

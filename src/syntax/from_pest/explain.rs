@@ -305,8 +305,8 @@ fn in_words(rule: Rule) -> &'static str {
         scope | each_group | zones_only | sections_only | kw_for => {
             "`for zones`, `for each zone` or `for sections where`"
         }
-        each_keys => "`each` and a key such as `zone` or `wheelset`",
-        key | key_word => "a key such as `zone` or `wheelset`",
+        each_keys => "`each` and a key such as `zone` or a place",
+        key | key_word => "a key such as `zone` or a place",
         fit | fit_kind => "`prediction over ... at ...`",
         regressor => "section data, or an expression of them in parentheses",
         fit_option | tails => "`one-sided` or `two-sided`",

@@ -6,7 +6,7 @@ parameter window "Longest time for which a criterion may be exceeded"
   default  50 ms
 
 parameter lv_limit "Single wheel L/V"
-  default  1.0
+  default  1
 
 parameter sum_limit "Axle sum L/V"
   default  1.5

@@ -69,7 +69,7 @@ quantity net_axle_lv "Net axle lateral L/V"
   filter  low-pass 25 Hz, then sliding minimum stretch every sample
   from    measured
   value   maximum
-  limit   each 0.4 + 5.0 / (2 * Q0 / (1000 lbf))
+  limit   each 0.4 + 5 / (2 * Q0 / (1000 lbf))
 
 quantity single_wheel_lv "Single wheel L/V"
   of      wheel_lv
@@ -104,4 +104,4 @@ quantity truck_lateral "Truck lateral, rms about the trend"
   filter  LP10, then sliding rms_about_trend WT every sample
   from    measured
   value   maximum
-  limit   each 0.30 gn
+  limit   each 0.3 gn

@@ -14,4 +14,4 @@ sections
 
 quantity truck_lateral
   of     ay
-  limit  each 0.10 gn
+  limit  each 0.1 gn

@@ -41,7 +41,7 @@ quantity derailment "Derailment coefficient"
   filter  low-pass 40 Hz, then sliding mean 2 m every 0.5 m
   from    measured
   value   maximum
-  limit   each 1.0 when direction is not straight and radius <= 400 m, otherwise 0.8
+  limit   each 1 when direction is not straight and radius <= 400 m, otherwise 0.8
 
 quantity unloading
   of      DP

@@ -21,7 +21,7 @@ filter Wf
   step  transfer function poles 0.08 Hz quality 0.70711 zeros 0 Hz
   step  transfer function poles 0.63 Hz quality 0.70711
   step  transfer function poles 0.25 Hz quality 0.86
-  step  transfer function poles 0.1 Hz quality 0.8 zeros 0.0625 Hz quality 0.8, gain (0.0625^2 / 0.1^2)
+  step  transfer function poles 0.1 Hz quality 0.8 zeros 0.0625 Hz quality 0.8, gain (0.0625^2/0.1^2)
 
 quantity MSDV "Motion sickness dose value"
   of     dose

@@ -7,8 +7,16 @@ parameter gain_tolerance "Share of the measured value"
 parameter offset_tolerance "Offset"
   default  3 kN
 
+signal Yf "Filtered guiding force"
+  is  Y through low-pass 6 Hz
+  at  each wheelset and side
+
 define half_width "Half the width of the corridor at a sample"
   is  offset_tolerance + gain_tolerance * |measured|
+
+define off_by "Distance from the measurement at the same sample, the simulation moved"
+  of  distance_moved
+  is  |shifted(simulated, distance_moved) - measured|
 
 quantity outside "Share of samples outside the corridor"
   of      Y at wheelsets 1, 3
@@ -16,19 +24,11 @@ quantity outside "Share of samples outside the corridor"
   metric  share where |simulated - measured| > half_width
   limit   each 80 %
 
-define off_by "Distance from the measurement at the same sample, the simulation moved"
-  of  distance_moved
-  is  |shifted(simulated, distance_moved) - measured|
-
 quantity outside_x "The same, of a corridor that is 0.5 m wide on either side along the track"
   of      Y at wheelsets 1, 3
   filter  low-pass 6 Hz
   metric  share where off_by(-0.5 m) > half_width and off_by(0 m) > half_width and off_by(0.5 m) > half_width
   limit   each 80 %
-
-signal Yf "Filtered guiding force"
-  is  Y through low-pass 6 Hz
-  at  each wheelset and side
 
 quantity peak_value "First peak"
   of          Yf at wheelsets 1, 3
@@ -42,6 +42,9 @@ quantity peak_time "Time of the peak, from the start of the section"
   difference  signed
   limit       p80 2 s
 
+verdict
+  validated  when corridor holds and peaks holds
+
 verdict corridor "Corridors"
   of     outside, outside_x
   holds  when every limit holds
@@ -50,6 +53,3 @@ verdict corridor "Corridors"
 verdict peaks "Peaks"
   of     peak_value, peak_time
   holds  when every limit holds
-
-verdict
-  validated  when corridor holds and peaks holds

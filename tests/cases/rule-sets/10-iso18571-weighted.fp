@@ -22,15 +22,15 @@ quantity ay_rating "Rating of ay"
   metric    iso18571 overall
   reported  "Enters the weighted rating."
 
-estimate combined "Weighted rating of all channels"
-  is  w_Y * mean + w_Q * mean of Q_rating + w_ay * mean of ay_rating
-
 quantity rating "Rating of Y, and weighted rating of all"
   of       Y at wheelsets 1, 3
   filter   LP20
   metric   iso18571 overall
+  report   combined
   outcome  excellent: holds when combined > 0.94
   outcome  good: holds when combined > 0.8
   outcome  fair: holds when combined > 0.58
   outcome  poor: fails
-  report   combined
+
+estimate combined "Weighted rating of all channels"
+  is  w_Y * mean + w_Q * mean of Q_rating + w_ay * mean of ay_rating

@@ -14,6 +14,11 @@ quantity {q}_relaxed "{q} with relaxed limits"
   like        {q}
   difference  {d} / relaxation
 
+verdict
+  outcome  validated: holds when strict holds
+  outcome  validated with restriction: holds when eleven holds and relaxed holds
+  outcome  not validated: fails
+
 verdict strict "All 12 within their limits"
   of     Y_qst, Q_qst, YQ_qst, SigmaY_qst, Y_max, Q_max, YQ_max, SigmaY_max, ay_rms, az_rms, ay_max, az_max
   holds  when every limit holds
@@ -25,8 +30,3 @@ verdict eleven "At least 11 of 12 within their limits"
 verdict relaxed "All within 120 % of their limits"
   of     {q}_relaxed
   holds  when every limit holds
-
-verdict
-  outcome  validated: holds when strict holds
-  outcome  validated with restriction: holds when eleven holds and relaxed holds
-  outcome  not validated: fails
