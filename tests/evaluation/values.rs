@@ -74,7 +74,8 @@ fn conditions_on_samples_and_values_agree_with_numpy() {
     };
     for (id, values) in expected.as_object().expect("quantities") {
         let quantity = found.quantities.iter().find(|one| one.id == *id).expect("a quantity");
-        assert_eq!(quantity.values.len(), 13, "{id}");
+        let there = values.as_object().expect("sections").values().filter(|one| !one.is_null());
+        assert_eq!(quantity.values.len(), there.count(), "{id}");
         for pair in &quantity.values {
             let (want, what) = (&values[&pair.section], format!("{id} {}", pair.section));
             if id == "mixed" {
