@@ -144,9 +144,10 @@ pub fn bare<T>(outcome: &Outcome<T>) -> (At<String>, bool, bool) {
     (outcome.word.clone(), outcome.holds, outcome.when.is_some())
 }
 
-/// A field as written.
-pub fn told(field: &Field) -> String {
-    normalised(&field.value.text)
+/// The outcomes of a verdict as written.
+pub fn outcomes_told(block: Option<&Block>) -> String {
+    let fields = block.into_iter().flat_map(|block| block.fields_named("outcome"));
+    fields.map(|field| normalised(&field.value.text)).collect::<Vec<_>>().join("; ")
 }
 
 /// Whether the word of a failed verdict has one of a passed verdict, its own or a usual one.

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::evaluate::is_whole;
-use super::outcomes::{NEITHER, bare, ends, says_passed, told};
+use super::outcomes::{NEITHER, bare, ends, outcomes_told, says_passed};
 use super::prelude::*;
 use crate::syntax::phrase::{Outcome, OverVerdicts, Verdict as Written};
 
@@ -71,7 +71,10 @@ impl Checker<'_> {
         VerdictRule {
             name: None,
             title: block.and_then(Block::title_text).unwrap_or_else(|| "Verdict".into()),
-            criterion: format!("{} {rule}", words[0]),
+            criterion: match &decision {
+                Decision::Ordered(_) => outcomes_told(block),
+                _ => format!("{} {rule}", words[0]),
+            },
             decision,
             words,
             own_words,
@@ -103,7 +106,7 @@ impl Checker<'_> {
                     let says = "a verdict has either outcomes or one rule";
                     self.tell(error("verdict-rule", says, &other.key));
                 }
-                criterion = block.fields_named("outcome").map(told).collect::<Vec<_>>().join("; ");
+                criterion = outcomes_told(Some(block));
                 Decision::Ordered(grades)
             }
             (Some(field), None) => self.decision(field, about, of, quantities, names),
