@@ -299,7 +299,8 @@ impl Checker<'_> {
         self.used_defines.insert(name.node.clone());
         if names.len() != given.len() {
             let (count, found) = (names.len(), given.len());
-            let says = format!("`{}` has {count} arguments; found {found}", name.node);
+            let s = if count == 1 { "" } else { "s" };
+            let says = format!("`{}` has {count} argument{s}; found {found}", name.node);
             let help = format!("write `{}({})`", name.node, names.join(", "));
             return self.refuse(error("arguments", says, name).help(help));
         }
