@@ -54,6 +54,9 @@ pub const SHIPPED: &[Shipped] = shipped![
     "code-benchmark-reference",
     "stationary-sway",
     "en12299-mean-comfort",
+    "cfr-213-333",
+    "cfr-238-appendix-c",
+    "cfr-238-appendix-c-stationary",
 ];
 
 /// Shipped texts without quantities, whose rules protocols share.

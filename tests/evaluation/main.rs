@@ -17,6 +17,7 @@ mod parts;
 mod peer;
 mod pooled;
 mod procedures;
+mod rule_sets;
 mod shipped_numbers;
 mod slurm;
 mod values;
