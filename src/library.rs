@@ -57,6 +57,12 @@ pub const SHIPPED: &[Shipped] = shipped![
     "cfr-213-333",
     "cfr-238-appendix-c",
     "cfr-238-appendix-c-stationary",
+    "gbt5599",
+    "aar-m1001-chapter-11",
+    "iso2631-msdv",
+    "iso18571-weighted-rating",
+    "en-score",
+    "tost-equivalence",
 ];
 
 /// Shipped texts without quantities, whose rules protocols share.

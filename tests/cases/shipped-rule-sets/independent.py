@@ -9,10 +9,16 @@ import pathlib
 import sys
 
 import numpy as np
-from scipy.signal import butter, sosfiltfilt
+from scipy.signal import bilinear, butter, lfilter, lfilter_zi, sosfiltfilt
+from scipy.stats import t as student
 
 RATE, ROWS, STEP = 400, 4801, 0.1  # samples/s, samples, m between samples
 SECTIONS = 3
+# Expanded uncertainty of the measurement and of the simulation, standard ones of numerics and input.
+U = {"Y": (0.9, 1.1, 0.2, 0.4), "Q": (1.5, 1.2, 0.3, 0.5), "ay": (0.05, 0.04, 0.01, 0.02)}
+PARTS = "measured", "simulated", "numerical", "input"
+UNCERTAINTY = "uncertainty:\n" + "".join(
+    f"  {c}_{part}: {u} {'m/s^2' if c == 'ay' else 'kN'}\n" for c, us in U.items() for part, u in zip(PARTS, us))
 Q0, FT, GN = 60e3, 0.3048, 9.80665
 WHEELS = [f"{w}{s}" for w in "1234" for s in "RL"]
 
@@ -41,7 +47,8 @@ def record(section, side):
     for at, (name, unit, mean, waves) in enumerate(channels()):
         values = []
         for i in range(ROWS):
-            v = mean
+            # A rise of its own tells one period from the next.
+            v = mean + waves[0][1] * i * i // (2 * ROWS * ROWS)
             for k, (quarter, size) in enumerate(waves):
                 shift = 37 * at * (k + 1) + 1000 * section + 3 * side
                 v += triangle(i + shift, quarter + at % 5 + 2 * section, size + size * side // 16)
@@ -65,7 +72,7 @@ def write(folder):
     (folder / "campaign.yaml").write_text(
         "name: Triangles\nvehicle: vehicle.yaml\nsections: sections.csv\nmeasurement: measurement\nsimulation: simulation\n")
     (folder / "vehicle.yaml").write_text(
-        "name: Coach\ncategory: passenger\nstatic_wheel_load: 60\nflange_angle: 68 deg\n")
+        "name: Coach\ncategory: passenger\nstatic_wheel_load: 60\nflange_angle: 68 deg\n" + UNCERTAINTY)
     table = "section,start [m],end [m],radius [m],direction,speed [km/h]\n"
     for section in range(SECTIONS):
         table += f"S{section + 1},100,400,500,right,144\n"
@@ -145,26 +152,157 @@ def stationary(c, x, t):
     return {("load", w): c["Q_" + w].mean() / c["Q_level_" + w].mean() for w in WHEELS}
 
 
-ONLY_238, ONLY_213 = ("side_load",), ("body", "truck_lateral")
+def transfer(x, numerator, denominator):
+    """Bilinear, one pass from the steady state of the first sample; highest power of s first."""
+    b, a = bilinear(numerator, denominator, RATE)
+    return lfilter(b, a, x, zi=lfilter_zi(b, a) * x[0])[0]
+
+
+def warped(f):
+    return 2 * RATE * math.tan(math.pi * f / RATE)
+
+
+def pair(f, quality):
+    return [1 / warped(f) ** 2, 1 / (quality * warped(f)), 1]
+
+
+def sperling(x, gain):
+    p = warped(0.7236876838804673)
+    x = transfer(x, [gain / p, 0], [1 / p, 1])
+    return transfer(x, [1 / warped(5.52955694427682), 1], pair(6.127742397935874, 0.9006768282515845))
+
+
+def sickness(x):
+    x = transfer(x, [1 / warped(0.08) ** 2, 0, 0], pair(0.08, 0.70711))
+    x = transfer(transfer(x, [1], pair(0.63, 0.70711)), [1], pair(0.25, 0.86))
+    return transfer(x, [k * 0.0625**2 / 0.1**2 for k in pair(0.0625, 0.8)], pair(0.1, 0.8))
+
+
+def cut(v):
+    return v[1000:4001]  # 100 m to 400 m, both ends included
+
+
+def means_of_2m(v):
+    """Windows of 20 samples every 5 samples, inside the section."""
+    v = cut(v)
+    return np.array([v[a:a + 20].mean() for a in range(0, len(v) - 20, 5)])
+
+
+def gbt5599(c, x, t):
+    out = {}
+    for g in "I", "II":
+        for name, channel, gain in ("lateral", "ay", 0.73730811351602), ("vertical", "az", 0.5882458219096603):
+            v = cut(sperling(c[f"{channel}_{g}"], gain))
+            out[f"ride_{name}", g] = 4.42 * math.sqrt(np.mean(v * v)) ** 0.3
+    for w in WHEELS:
+        lateral, vertical = low(c["Y_" + w], 40), low(c["Q_" + w], 40)
+        out["derailment", w] = means_of_2m(abs(lateral) / vertical).max()
+        out["unloading", w] = means_of_2m(1 - vertical / Q0).max()
+    for w in "1234":
+        out["axle_lateral", w] = abs(means_of_2m(low(c[f"Y_{w}R"] + c[f"Y_{w}L"], 40))).max() / 1e3
+    return out
+
+
+def dose(x):
+    a = sickness(x)
+    return math.sqrt(np.trapezoid(a * a, dx=1 / RATE))
+
+
+def msdv(c, x, t, s):
+    out = {}
+    for g in "I", "II":
+        measured, simulated = dose(c["az_" + g]), dose(s["az_" + g])
+        out["dose_measured", g], out["dose_simulated", g] = measured, simulated
+        out["dose_difference", g] = (simulated - measured) / measured
+    return out
+
+
+def aar(c, x, t):
+    out = {}
+    lv = {w: abs(low(c["Y_" + w], 15)) / low(c["Q_" + w], 15) for w in WHEELS}
+    for w in WHEELS:
+        out["wheel", w] = smallest(lv[w], t, 0.05).max()
+        out["load", w] = largest(low(c["Q_" + w], 15) / Q0, t, 0.05).min()
+    for w in "1234":
+        out["axle", w] = smallest(lv[w + "R"] + lv[w + "L"], t, 0.05).max()
+    for g, (a, b) in {"I": "12", "II": "34"}.items():
+        for s in "RL":
+            lateral = low(c[f"Y_{a}{s}"] + c[f"Y_{b}{s}"], 15)
+            vertical = low(c[f"Q_{a}{s}"] + c[f"Q_{b}{s}"], 15)
+            out[f"truck_side_{g}", s] = smallest(abs(lateral) / vertical, t, 0.05).max()
+    return out
+
+
+def reduced(c, s, name, position, value):
+    scale = 1 if name == "ay" else 1e3
+    return [value(cut(low(side[f"{name}_{position}"], 20))) / scale for side in (c, s)]
+
+
+def positions():
+    return [("Y", w) for w in WHEELS] + [("Q", w) for w in WHEELS] + [("ay", "I"), ("ay", "II")]
+
+
+def rms(v):
+    return math.sqrt(np.mean(v * v))
+
+
+def en_score(c, x, t, s):
+    out = {}
+    for name, at in positions():
+        measured, simulated = reduced(c, s, name, at, rms)
+        out[name + "_En", at] = abs(simulated - measured) / math.hypot(*U[name][:2])
+        out[name + "_error", at] = simulated - measured
+    return out
+
+
+def tost(c, x, t, s):
+    out = {}
+    for name, at in positions():
+        measured, simulated = reduced(c, s, name, at, rms if name == "ay" else np.median)
+        out[name + "_equivalence", at] = simulated - measured
+    return out
+
+
+def bounds(found):
+    """Both 95 % ends of the mean; sections are the independent units, whose sums scatter."""
+    for name in "Y", "Q", "ay":
+        units = [[v for (q, _), v in one.items() if q == name + "_equivalence"] for one in found]
+        mean, n, groups = np.mean(units), np.size(units), len(units)
+        sums = [sum(np.array(unit) - mean) for unit in units]
+        error = math.sqrt(groups / (groups - 1) * np.sum(np.square(sums))) / n
+        half = student.ppf(0.95, groups - 1) * error
+        yield name, mean + half, mean - half
+
+
 ASSESSED = {
-    "cfr-213-333": lambda *a: {k: v for k, v in {**cfr(*a), **body(*a)}.items() if not k[0].startswith(ONLY_238)},
+    "cfr-213-333": lambda *a: {k: v for k, v in {**cfr(*a), **body(*a)}.items() if not k[0].startswith("side_load")},
     "cfr-238-appendix-c": cfr,
     "cfr-238-appendix-c-stationary": stationary,
+    "gbt5599": gbt5599,
+    "aar-m1001-chapter-11": aar,
 }
+COMPARED = {"iso2631-msdv": msdv, "en-score": en_score, "tost-equivalence": tost}
 
 
 def main():
     folder = pathlib.Path(sys.argv[1])
     write(folder)
     rows = ["protocol,section,quantity,position,value"]
+    equivalence = []
     for section in range(SECTIONS):
         measured, simulated = ({n: np.array(v, float) / (1000 if "mm" in u else 1)
                                 for (n, u), v in record(section, side).items()} for side in (0, 1))
         i = np.arange(ROWS)
-        for protocol, numbers in ASSESSED.items():
-            for (quantity, position), value in numbers(measured, i / 10, i / RATE).items():
+        found = {p: f(measured, i / 10, i / RATE) for p, f in ASSESSED.items()}
+        found |= {p: f(measured, i / 10, i / RATE, simulated) for p, f in COMPARED.items()}
+        equivalence.append(found["tost-equivalence"])
+        for protocol, numbers in found.items():
+            for (quantity, position), value in numbers.items():
                 rows.append(f"{protocol},S{section + 1},{quantity},{position},{float(value)!r}")
+    for name, upper, lower in bounds(equivalence):
+        print(name, upper, lower)
     pathlib.Path(__file__).with_name("expected.csv").write_text("\n".join(rows) + "\n")
 
 
-main()
+if __name__ == "__main__":
+    main()
