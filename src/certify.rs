@@ -19,6 +19,7 @@ use crate::result::{
 };
 use crate::run::{self, Outcome, Progress, Settings};
 use crate::syntax::document::Block;
+use crate::words;
 
 pub use about::About;
 pub use again::{Rules, Setting, again, confirmations};
@@ -115,6 +116,8 @@ pub fn certification(compiled: &Compiled, about: &About, outcome: Outcome) -> Ce
     Certification {
         fishplate: THIS.into(),
         format: FORMAT,
+        language: words::language(),
+        template: None,
         verdict_text: Kind::of(&judged.quantities).verdict_words(judged.verdict).into(),
         verdict: judged.verdict,
         own_word: judged.own_word,

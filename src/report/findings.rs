@@ -17,8 +17,8 @@ struct Row {
     sections: String,
     /// What is found in the first place, as a sentence.
     says: String,
-    /// The likely cause; empty if none is known.
-    cause: String,
+    /// The likely causes; empty if none is known.
+    causes: String,
     /// `noted`, `section not used`, `not assessable`.
     consequence: &'static str,
     tone: Tone,
@@ -35,7 +35,7 @@ pub fn table(findings: &[Finding]) -> Table {
             row.subject,
             row.sections,
             Symbols::default().text(&row.says),
-            row.cause,
+            row.causes,
             Cell::from(row.consequence).toned(row.tone)
         ]
     };
@@ -72,13 +72,15 @@ impl Row {
         };
         let consequence = finding.with_explained().map(|one| one.consequence).max();
         let consequence = consequence.unwrap_or(finding.consequence);
+        let causes: Vec<String> =
+            finding.causes.iter().map(|cause| words::text(cause).into()).collect();
         let subject: Vec<String> = subject.into_iter().filter(|part| !part.is_empty()).collect();
         Self {
             code: finding.code.clone(),
             subject: subject.join(", "),
             sections: named(|at| at.section.as_ref()),
             says: number::raised(finding.first.text()) + &also,
-            cause: words::or_nothing(finding.cause.as_ref()),
+            causes: causes.join("; "),
             consequence: consequence.in_words(),
             tone: if consequence == Consequence::Note { Tone::Open } else { Tone::Bad },
         }
@@ -104,10 +106,10 @@ pub fn line(finding: &Finding) -> String {
         .filter(|part| !part.is_empty())
         .collect();
     let about = if about.is_empty() { String::new() } else { format!("{}: ", about.join(", ")) };
-    let cause = if row.cause.is_empty() {
+    let cause = if row.causes.is_empty() {
         String::new()
     } else {
-        format!(" (likely cause: {})", row.cause)
+        format!(" (likely cause: {})", row.causes)
     };
     format!("{about}{}{cause} [{}; {}]", row.says, row.code, row.consequence)
 }

@@ -14,10 +14,10 @@ pub struct Finding {
     /// The first of its places.
     #[serde(flatten)]
     pub first: Occurrence,
-    /// The likely cause, if known.
-    #[serde(flatten, with = "told::cause")]
-    #[schemars(with = "told::NoneOrCause<Reason>")]
-    pub cause: Option<Reason>,
+    /// The causes that it may have, the likeliest first; empty if none is known.
+    #[serde(flatten, with = "told::causes")]
+    #[schemars(with = "told::Causes<Reason>")]
+    pub causes: Vec<Reason>,
     pub consequence: Consequence,
     /// Findings of other rules at the same places, which probably have the same cause.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -103,7 +103,7 @@ impl Finding {
         Self {
             code: code.into(),
             first: first.into(),
-            cause: None,
+            causes: Vec::new(),
             consequence: Consequence::Note,
             explains: Vec::new(),
             places: Vec::new(),
@@ -115,8 +115,8 @@ impl Finding {
         let mut joined: Vec<Self> = Vec::new();
         for mut finding in all {
             let alike = |known: &&mut Self| {
-                (&known.code, &known.cause, known.consequence)
-                    == (&finding.code, &finding.cause, finding.consequence)
+                (&known.code, &known.causes, known.consequence)
+                    == (&finding.code, &finding.causes, finding.consequence)
                     && known.first.data.alike(&finding.first.data)
             };
             match joined.iter_mut().find(alike) {
@@ -167,8 +167,8 @@ mod tests {
                 value: Some(value),
                 ..data.into()
             };
-            let cause = Some(Reason::said(cause));
-            Finding { cause, ..Finding::note("wheel-load", first) }
+            let causes = vec![Reason::said(cause), Reason::said("noise")];
+            Finding { causes, ..Finding::note("wheel-load", first) }
         };
         let note = Finding::note("unit-assumed", FindingData::Said { says: "a fact".into() });
         let all = vec![
@@ -190,6 +190,8 @@ mod tests {
         assert_eq!(joined[2].places(), all[4].places());
         let text = serde_json::to_string(&joined).expect("JSON");
         assert_eq!(serde_json::from_str::<Vec<Finding>>(&text).expect("findings"), joined);
-        assert!(text.contains(r#""cause":"a factor of 2","cause_data":{"code":"said""#), "{text}");
+        let causes =
+            r#""cause":"a factor of 2","causes":["a factor of 2","noise"],"causes_data":[{"#;
+        assert!(text.contains(causes), "{text}");
     }
 }

@@ -74,6 +74,12 @@ pub fn text(result: &impl Serialize) -> String {
 pub struct Certification {
     pub fishplate: String,
     pub format: u32,
+    /// Of the texts, by ISO 639-1; files of before are in English.
+    #[serde(default = "words::language")]
+    pub language: String,
+    /// SHA-256 of the template of the report; `None` for that of the program.
+    #[serde(default)]
+    pub template: Option<String>,
     pub protocol: ProtocolInfo,
     pub campaign: CampaignInfo,
     /// The overall verdict in the words of the report.

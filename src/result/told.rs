@@ -83,10 +83,6 @@ keys! {
     statements Statements<S> {
         says: Vec<String>, says_data: Vec<S>, missing if "Vec::is_empty"
     }
-    /// A cause, or none.
-    cause NoneOrCause<R> {
-        cause: Option<String>, cause_data: Option<R>, missing if "Option::is_none"
-    }
     /// Why a factor applies.
     because Because<R> { because: String, because_data: R }
     /// Any number of remarks.
@@ -108,6 +104,40 @@ keys! {
         not_used: Vec<(String, String)>, not_used_data: Vec<(String, R)>,
         missing if "Vec::is_empty"
     }
+}
+
+/// Causes, with the likeliest one alone beside them. Files of before have that one alone.
+pub mod causes {
+    use super::*;
+
+    pub fn serialize<S: Serializer>(of: &impl Serialize, to: S) -> Result<S::Ok, S::Error> {
+        let found = serde_json::to_value(of).map_err(S::Error::custom)?;
+        let texts = words::texts(&found);
+        let data = texts.get(0).is_some().then_some(("causes_data", found));
+        let likeliest = texts.get(0).cloned().unwrap_or_default();
+        to.collect_map([("cause", likeliest), ("causes", texts)].into_iter().chain(data))
+    }
+
+    pub fn deserialize<'de, T: DeserializeOwned, D: Deserializer<'de>>(
+        from: D,
+    ) -> Result<T, D::Error> {
+        let mut fields = Map::deserialize(from)?;
+        let mut only = |key| fields.remove(key).filter(|found| !found.is_null());
+        let data = only("causes_data").or_else(|| only("causes").map(said));
+        let before = only("cause_data").or_else(|| only("cause").map(said));
+        let found = data.unwrap_or_else(|| before.into_iter().collect());
+        serde_json::from_value(found).map_err(D::Error::custom)
+    }
+}
+
+/// Causes, as [`causes`] writes them.
+#[derive(JsonSchema)]
+#[allow(dead_code, reason = "the schema describes it")]
+pub struct Causes<R> {
+    cause: Option<String>,
+    causes: Vec<String>,
+    #[schemars(default, skip_serializing_if = "Vec::is_empty")]
+    causes_data: Vec<R>,
 }
 
 /// A reason, as [`reason`] writes it where there is always one.

@@ -123,7 +123,7 @@ impl Found {
         }
         Self {
             code: text(if of_samples.is_string() { of_samples } else { &finding["code"] }),
-            guessed: finding["cause_data"]["code"] == "both",
+            guessed: finding["causes"].get(1).is_some(),
             places,
         }
     }

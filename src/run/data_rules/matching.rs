@@ -183,7 +183,7 @@ impl Matching<'_> {
         };
         let otherwise = if channel { rule.otherwise_at(&shape.channel) } else { rule.otherwise };
         Some(Finding {
-            cause: rule.cause.clone().map(Reason::said),
+            causes: rule.cause.clone().map(Reason::said).into_iter().collect(),
             consequence: consequence(otherwise),
             ..Finding::note(&rule.name, first)
         })

@@ -49,7 +49,7 @@ fn finding(
         ..Occurrence::from(data)
     };
     Some(Finding {
-        cause: rule.cause.clone().map(Reason::said),
+        causes: rule.cause.clone().map(Reason::said).into_iter().collect(),
         consequence: consequence(rule.otherwise),
         ..Finding::note(&rule.name, first)
     })

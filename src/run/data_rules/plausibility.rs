@@ -244,12 +244,7 @@ impl Position<'_> {
             causes::likely(*value, *expected, unit.dimension)
         });
         let named = self.rule.cause.clone().map(Reason::said);
-        let cause = match (guessed, named) {
-            (Some(first), Some(second)) => {
-                Some(Reason::Both { first: Box::new(first), second: Box::new(second) })
-            }
-            (guessed, named) => guessed.or(named),
-        };
+        let causes = guessed.into_iter().chain(named).collect();
         let value = numbers.as_ref().map(|(value, ..)| *value);
         let expected = numbers.as_ref().map(|(_, expected, ..)| *expected);
         let unit = numbers.as_ref().map(|(_, _, unit, ..)| unit.text.clone());
@@ -271,6 +266,6 @@ impl Position<'_> {
             unit,
         };
         let consequence = consequence(self.rule.otherwise_at(self.name));
-        Some(Finding { cause, consequence, ..Finding::note(&self.rule.name, first) })
+        Some(Finding { causes, consequence, ..Finding::note(&self.rule.name, first) })
     }
 }
