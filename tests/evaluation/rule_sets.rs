@@ -298,6 +298,29 @@ fn limits_of_uncertainties() {
     }
 }
 
+/// Each grade: the bounds of the better ones are missed by 1e-6, those of it and the worse ones are
+/// met by as much. `met` is the sign of a bound that is met.
+fn grades(
+    folder: &Path,
+    (protocol, id, ending): (&str, &str, &str),
+    names: [&str; 4],
+    (value, met): (f64, f64),
+) -> Vec<Certification> {
+    let mut all = Vec::new();
+    for (at, grade) in names.iter().enumerate() {
+        let bound = |nth: usize| if nth < at { value - met * 1e-6 } else { value + met * 1e-6 };
+        let bounds: Vec<String> =
+            (0..3).map(|nth| format!("{}_{ending}={}", names[nth], bound(nth))).collect();
+        let set: Vec<&str> = bounds.iter().map(String::as_str).collect();
+        let found = run_with(folder, protocol, &set);
+        let graded = quantity(&found, id);
+        assert_eq!(graded.outcome.as_deref(), Some(*grade), "{set:?}");
+        assert_eq!(graded.holds, Some(at < 3), "{set:?}");
+        all.push(found);
+    }
+    all
+}
+
 /// The grade of a ride, by the largest of its six values.
 #[test]
 fn grades_of_the_ride() {
@@ -305,21 +328,8 @@ fn grades_of_the_ride() {
     let found = run(folder.path(), "gbt5599");
     let values = quantity(&found, "ride_lateral").values.iter().map(|value| value.difference);
     let largest = values.fold(f64::MIN, f64::max);
-    for (at, grade) in ["excellent", "good", "qualified", "unqualified"].iter().enumerate() {
-        let bounds: Vec<String> = ["excellent", "good", "qualified"]
-            .iter()
-            .enumerate()
-            .map(|(nth, name)| {
-                let bound = if nth < at { largest - 1e-6 } else { largest + 1e-6 };
-                format!("{name}_coach={bound}")
-            })
-            .collect();
-        let set: Vec<&str> = bounds.iter().map(String::as_str).collect();
-        let found = run_with(folder.path(), "gbt5599", &set);
-        let ride = quantity(&found, "ride_lateral");
-        assert_eq!(ride.outcome.as_deref(), Some(*grade), "{set:?}");
-        assert_eq!(ride.holds, Some(at < 3), "{set:?}");
-    }
+    let names = ["excellent", "good", "qualified", "unqualified"];
+    grades(folder.path(), ("gbt5599", "ride_lateral", "coach"), names, (largest, 1.0));
 }
 
 /// Both ends of the interval, by `independent.py` (Student's t of SciPy, sums of the sections).
@@ -348,21 +358,10 @@ fn ends_of_the_mean_difference() {
 fn grades_of_the_weighted_rating() {
     const RATING: f64 = 0.985_012_121_038_730_6;
     let folder = triangles();
-    let protocol = "iso18571-weighted-rating";
-    for (at, grade) in ["excellent", "good", "fair", "poor"].iter().enumerate() {
-        let bounds: Vec<String> = ["excellent", "good", "fair"]
-            .iter()
-            .enumerate()
-            .map(|(nth, name)| {
-                let bound = if nth < at { RATING + 1e-6 } else { RATING - 1e-6 };
-                format!("{name}_above={bound}")
-            })
-            .collect();
-        let set: Vec<&str> = bounds.iter().map(String::as_str).collect();
-        let found = run_with(folder.path(), protocol, &set);
-        let rating = quantity(&found, "rating");
-        assert_eq!(rating.outcome.as_deref(), Some(*grade), "{set:?}");
-        let weighted = rating.reported[0].value.expect("a number");
+    let names = ["excellent", "good", "fair", "poor"];
+    let graded = ("iso18571-weighted-rating", "rating", "above");
+    for found in grades(folder.path(), graded, names, (RATING, -1.0)) {
+        let weighted = quantity(&found, "rating").reported[0].value.expect("a number");
         assert!((weighted / RATING - 1.0).abs() < TOLERANCE, "{weighted}");
     }
 }
