@@ -1,4 +1,4 @@
-protocol iso2631-msdv "ISO 2631-1 style motion sickness dose value"
+protocol motion-sickness-dose "ISO 2631-1 style motion sickness dose value"
   axis  time in s
   time  time in s
 
