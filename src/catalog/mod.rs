@@ -15,8 +15,8 @@ pub use entries::{Entry, entries};
 pub use forms::{Choice, Form, FormPart, NumberOption};
 pub use functions::{FUNCTIONS, Function, SIGNAL_FUNCTIONS, Signature};
 pub use reducers::{
-    InWindow, LONGEST_RUN, REDUCERS, Reducer, ReducerEntry, SHARE_OF_SAMPLES, STATISTICS,
-    Statistic, StatisticEntry,
+    CROSSINGS, InWindow, LONGEST_RUN, REDUCERS, Reducer, ReducerEntry, SHARE_OF_SAMPLES,
+    STATISTICS, Statistic, StatisticEntry,
 };
 pub use steps::{STEPS, StepEntry, StepKind};
 pub use two_signals::{Asked, Best, METRICS, Metric, MetricEntry, NOT_CHECKED, Pair};

@@ -194,6 +194,13 @@ pub static SHARE_OF_SAMPLES: ReducerEntry =
         statistics::mean(x)
     });
 
+/// `crossings where Q > 60 kN`: how often the condition comes to hold.
+pub static CROSSINGS: ReducerEntry = share!(
+    "crossings where",
+    "How often a condition comes to hold from one sample to the next.",
+    |x: &Traits<'_>| sampling::onsets(x)
+);
+
 /// `longest run where Q < 10 kN`: from the first to the last sample of the longest run.
 pub static LONGEST_RUN: ReducerEntry = ReducerEntry {
     name: "longest run where",

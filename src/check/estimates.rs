@@ -391,10 +391,17 @@ impl Checker<'_> {
             (Counted::Share, _) => true,
             (Counted::Count, None) => false,
             (Counted::Count, Some(_)) => return self.no_weight("a number of values", span),
-            (Counted::LongestRun { .. }, _) => {
-                let says = "a longest run is one of samples, and these are values of sections";
-                let help = "it stands in the `value` of a quantity: `longest run where Q < 10 kN`";
-                return self.refuse(error("run-of-values", says, span).help(help));
+            (Counted::LongestRun { .. } | Counted::Crossings, _) => {
+                let (what, words) = if counted == Counted::Crossings {
+                    ("crossings are those", "crossings")
+                } else {
+                    ("a longest run is one", "longest run")
+                };
+                let says = format!("{what} of samples, and these are values of sections");
+                let problem = error("run-of-values", says, span);
+                return self.refuse(problem.help(format!(
+                    "it stands in the `value` of a quantity: `{words} where Q < 10 kN`"
+                )));
             }
         };
         let others = of_row.others;

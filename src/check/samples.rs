@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::prelude::*;
 use super::scope::Reduce;
-use crate::catalog::{LONGEST_RUN, Reducer, SHARE_OF_SAMPLES};
+use crate::catalog::{CROSSINGS, LONGEST_RUN, Reducer, SHARE_OF_SAMPLES};
 use crate::syntax::phrase::Counted;
 
 /// What a name in a phrase is; `None` if it is looked for in the parts of the phrase.
@@ -100,7 +100,7 @@ impl Checker<'_> {
         self.refuse(error("missing-samples", says, expr).help(help))
     }
 
-    /// `share where Q < 10 kN`, `longest run where Q < 10 kN`: of the samples of a section.
+    /// `share where Q < 10 kN`, `longest run where ...`, `crossings where ...`: of the samples of a section.
     pub fn share_of_samples(
         &mut self,
         counted: Counted,
@@ -138,9 +138,11 @@ impl Checker<'_> {
         match counted {
             Counted::Share => Some((Reducer::Named(&SHARE_OF_SAMPLES), None)),
             Counted::Count => self.refuse(
-                error("count-of-samples", "the number of samples depends on the rate", span)
-                    .help("write `share where ...` or `longest run where ...`"),
+                error("count-of-samples", "the number of samples depends on the rate", span).help(
+                    "write `share where ...`, `longest run where ...` or `crossings where ...`",
+                ),
             ),
+            Counted::Crossings => Some((Reducer::Named(&CROSSINGS), None)),
             Counted::LongestRun { in_time: true } if axis != Dimension::TIME => {
                 let Some(time) = self.time.clone() else {
                     let says = "the protocol has no field `time`";

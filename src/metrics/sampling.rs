@@ -68,6 +68,15 @@ pub fn longest_run(axis: &[f64], holds: &[f64]) -> Option<f64> {
     (!holds.is_empty()).then_some(longest)
 }
 
+/// How often samples other than 0 follow one that is 0: the upward crossings of a level, of a signal
+/// that is 1 above it. One that begins above it has not crossed it.
+///
+/// `None` without samples.
+pub fn onsets(holds: &[f64]) -> Option<f64> {
+    let onsets = holds.windows(2).filter(|pair| pair[0] == 0.0 && pair[1] != 0.0).count();
+    (!holds.is_empty()).then_some(onsets as f64)
+}
+
 /// Share of the samples at the smallest or at the largest value, the larger of both. It is large
 /// for a saturated recorder.
 ///
@@ -408,6 +417,11 @@ mod tests {
         assert_eq!(longest_run(&axis, &[1.0, 1.0, 1.0, 0.0, 0.0, 1.0]), Some(2.0));
         assert_eq!(longest_run(&axis, &[0.0, 1.0, 0.0, 0.0, 0.0, 0.0]), Some(0.0));
         assert_eq!(longest_run(&[], &[]), None);
+        assert_eq!(onsets(&[1.0, 1.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0]), Some(2.0));
+        assert_eq!(
+            (onsets(&[1.0; 3]), onsets(&[0.0, 1.0]), onsets(&[])),
+            (Some(0.0), Some(1.0), None)
+        );
         assert_eq!(share_at_extreme(&[-1.0, 0.5, 2.0, 2.0, 2.0, 0.0]), Some(0.5));
         assert_eq!(resolution(&[0.5, 1.0, 0.75, 1.25]), Some(0.25));
         assert_eq!(resolution(&[3.0, 3.0]), Some(0.0));

@@ -237,6 +237,8 @@ pub enum Counted {
     Share,
     /// How many there are.
     Count,
+    /// How often the condition comes to hold from one sample to the next.
+    Crossings,
     /// The longest stretch of samples one after the other, along the axis or in time.
     LongestRun {
         in_time: bool,

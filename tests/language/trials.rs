@@ -156,3 +156,45 @@ fn rule_sets_give_the_numbers_of_tones() {
     // A window of a second holds 50 samples, 0.98 s from the first to the last.
     assert!((0.0..0.03).contains(&short), "{short}");
 }
+
+/// A tone of 0.4 Hz over 250 s comes above any level within its range 100 times; the written samples
+/// and the filter move no crossing over the ends of the section.
+#[test]
+fn crossings_of_a_tone() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    tones(folder.path(), 0.2, 0.4);
+    let protocol = folder.path().join("crossings.fp");
+    let text = |name: &str, value: &str| {
+        format!(
+            "quantity {name}\n  from  measured\n  of  ay\n  value  {value}\n  limit  each 1\n\n"
+        )
+    };
+    let text =
+        "protocol crossings \"Crossings\"\n  axis  time in s\n\nchannel ay \"ay\"\n  in  m/s^2\n  \
+                column  \"ay_I\"\n\n"
+            .to_string()
+            + &text("half", "crossings where ay > 0.5 m/s^2")
+            + &text("falling", "crossings where ay < 0.5 m/s^2")
+            + &text("rate", "(crossings where ay > 0.5 m/s^2) / length * (1 s)")
+            + &text("never", "crossings where ay > 2 m/s^2")
+            + &text("always", "crossings where ay < 2 m/s^2")
+            + "verdict\n  validated  when every limit holds\n";
+    fs::write(&protocol, text).expect("a file");
+    let out = folder.path().join("out");
+    let ran = fishplate(&[
+        "certify",
+        folder.path().to_str().expect("a path in UTF-8"),
+        "--protocol",
+        protocol.to_str().expect("a path in UTF-8"),
+        "--only",
+        "results",
+        "--out",
+        out.to_str().expect("a path in UTF-8"),
+    ]);
+    assert!([0, 1].contains(&ran.code), "{}{}", ran.stdout, ran.stderr);
+    let text = fs::read_to_string(out.join("results.json")).expect("results.json");
+    let found: Value = serde_json::from_str(&text).expect("JSON");
+    let of = |at: usize| found["quantities"][at]["values"][0]["value"].as_f64().expect("a value");
+    assert_eq!([of(0), of(1), of(3), of(4)], [100.0, 100.0, 0.0, 0.0]);
+    assert!((of(2) - 0.4).abs() < 1e-12, "{}", of(2));
+}

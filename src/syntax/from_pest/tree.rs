@@ -284,10 +284,11 @@ fn without_suffix(mut part: Parsed) -> Option<Phrase> {
     Some(part.at(node))
 }
 
-/// `share`, `count`, `longest run`, `longest run in time`.
+/// `share`, `count`, `crossings`, `longest run`, `longest run in time`.
 fn counted(words: &str) -> Counted {
     match (words, words.split_whitespace().count()) {
         ("count", _) => Counted::Count,
+        ("crossings", _) => Counted::Crossings,
         (_, 1) => Counted::Share,
         (_, words) => Counted::LongestRun { in_time: words > 2 },
     }

@@ -4,18 +4,9 @@ protocol counts "Level crossings and class shares"
 parameter level "Level of the wheel force"
   default  60 kN
 
-signal above "1 above the level, 0 below"
-  is  1 when Q through LP20 > level, otherwise 0
-  at  each wheelset and side
-
-# Every crossing is a change of 1 over one step; the magnitude of its slope integrates to 1.
-signal crossings "Number of crossings of the level since the start of the record"
-  is  integral(|derivative(above)|)
-  at  each wheelset and side
-
-quantity Q_crossings "Crossings of the level per metre"
-  of          crossings at wheelset 1
-  value       (last - first) / length
+quantity Q_crossings "Upward crossings of the level per metre"
+  of          Q at wheelset 1
+  value       (crossings where Q through LP20 > level) / length
   difference  signed
   limit       std 0.1 1/m
 
