@@ -146,8 +146,10 @@ signal load_share "Vertical wheel load over the static one"
   in  -
 
 filter LP25 "Low-pass of the forces"
-  step    low-pass 25 Hz, order 4, zero-phase
-  source  "49 CFR 213.333, edition of 1998: at least 25 Hz. Order and phase are this text's own"
+  step        low-pass 25 Hz, order 4, zero-phase
+  clause      "49 CFR 213.333, processing of wheel forces"
+  paraphrase  "Wheel forces are low-pass filtered at 25 Hz or more."
+  source      "49 CFR 213.333, edition of 1998: at least 25 Hz. Order and phase are this text's own"
 
 filter OVER_STRETCH "What is exceeded throughout the distance"
   step  sliding minimum stretch every sample
@@ -167,10 +169,12 @@ filter BODY_RMS "Running rms about the trend, car body"
   step  sliding minimum body_window every sample when sustained is throughout
 
 filter TRUCK_RMS "Running rms about the trend, truck"
-  step    band-pass 0.5 Hz to 10 Hz, order 4, zero-phase
-  step    sliding rms_about_trend truck_window every sample
-  step    sliding minimum truck_window every sample when sustained is throughout
-  source  "49 CFR 213.333, edition of 1998: 0.5 Hz to 10 Hz. Order and phase are this text's own"
+  step        band-pass 0.5 Hz to 10 Hz, order 4, zero-phase
+  step        sliding rms_about_trend truck_window every sample
+  step        sliding minimum truck_window every sample when sustained is throughout
+  clause      "49 CFR 213.333, processing of truck accelerations"
+  paraphrase  "Truck lateral accelerations are band-pass filtered from 0.5 Hz to 10 Hz."
+  source      "49 CFR 213.333, edition of 1998: 0.5 Hz to 10 Hz. Order and phase are this text's own"
 
 define single_wheel_limit "Limit of a single wheel, by the flange angle"
   is  (tan(flange_angle) - friction) / (1 + friction * tan(flange_angle))
@@ -192,63 +196,110 @@ sections
   use  whole records
 
 quantity wheel_load "Least vertical wheel load, share of the static one"
-  of      load_share
-  filter  sliding maximum stretch every sample
-  from    measured
-  value   minimum
-  limit   each at least least_load_limit
+  of          load_share
+  filter      sliding maximum stretch every sample
+  from        measured
+  value       minimum
+  limit       each at least least_load_limit
+  clause      "49 CFR 213.333, table, single wheel vertical load"
+  paraphrase  "No wheel carries less than 0.15 of its static load throughout 5 ft."
 
 quantity single_wheel "L/V of a wheel"
-  of      wheel_lv
-  filter  OVER_STRETCH
-  from    measured
-  value   maximum
-  limit   each single_wheel_limit
+  of          wheel_lv
+  filter      OVER_STRETCH
+  from        measured
+  value       maximum
+  limit       each single_wheel_limit
+  clause      "49 CFR 213.333, table, single wheel L/V"
+  paraphrase  "The limit follows from the flange angle and a friction of 0.5; beyond it for less than 5 ft"
+              "does not count."
 
 quantity net_axle "Net lateral force of an axle over its static load"
-  of      net_lv
-  filter  OVER_STRETCH
-  from    measured
-  value   maximum
-  limit   each net_axle_base + net_axle_load / (2 * Q0)
+  of          net_lv
+  filter      OVER_STRETCH
+  from        measured
+  value       maximum
+  limit       each net_axle_base + net_axle_load / (2 * Q0)
+  clause      "49 CFR 213.333, table, net axle lateral L/V"
+  paraphrase  "The sum of both lateral forces over the static axle load, with a limit that grows as the load"
+              "falls."
 
 quantity truck_side_{truck} "L/V of a side of truck {truck}"
-  for each  truck in I, II
-  of        truck_lv_{truck}
-  filter    OVER_STRETCH
-  from      measured
-  value     maximum
-  limit     each truck_side_limit
+  for each    truck in I, II
+  of          truck_lv_{truck}
+  filter      OVER_STRETCH
+  from        measured
+  value       maximum
+  limit       each truck_side_limit
+  clause      "49 CFR 213.333, table, truck side L/V"
+  paraphrase  "The lateral forces of one side of a truck over its vertical forces stay within 0.6 throughout"
+              "5 ft."
 
 quantity body_{direction}_peak "Car body {direction}, peak to peak in any window"
-  for each  direction, channel in (lateral, ay), (vertical, az)
-  of        {channel}
-  filter    BODY, then WITHOUT_SHORT_PEAKS, then sliding range transient_window every sample
-  from      measured
-  value     maximum
-  limit     each {direction}_peak_passenger_limit when category is passenger,
-            otherwise {direction}_peak_other_limit
+  for each    direction, channel in (lateral, ay), (vertical, az)
+  of          {channel}
+  filter      BODY, then WITHOUT_SHORT_PEAKS, then sliding range transient_window every sample
+  from        measured
+  value       maximum
+  limit       each {direction}_peak_passenger_limit when category is passenger,
+              otherwise {direction}_peak_other_limit
+  clause      "49 CFR 213.333, table, carbody, transient"
+  paraphrase  "The car body stays within a peak-to-peak acceleration in any second; peaks shorter than 50 ms"
+              "do not count."
 
 quantity body_lateral_rms "Car body lateral, sustained oscillation"
-  of      ay
-  filter  BODY_RMS
-  from    measured
-  value   maximum
-  limit   each lateral_rms_passenger_limit when category is passenger, otherwise lateral_rms_other_limit
+  of          ay
+  filter      BODY_RMS
+  from        measured
+  value       maximum
+  limit       each lateral_rms_passenger_limit when category is passenger, otherwise lateral_rms_other_limit
+  clause      "49 CFR 213.333, table, carbody lateral, sustained oscillatory"
+  paraphrase  "The rms about the linear trend over 4 s stays within the limit."
 
 quantity body_vertical_rms "Car body vertical, sustained oscillation"
-  of      az
-  filter  BODY_RMS
-  from    measured
-  value   maximum
-  limit   each vertical_rms_limit
+  of          az
+  filter      BODY_RMS
+  from        measured
+  value       maximum
+  limit       each vertical_rms_limit
+  clause      "49 CFR 213.333, table, carbody vertical, sustained oscillatory"
+  paraphrase  "The rms about the linear trend over 4 s stays within the limit."
 
 quantity truck_lateral "Truck lateral, sustained oscillation"
-  of      ayb
-  filter  TRUCK_RMS
-  from    measured
-  value   maximum
-  limit   each truck_lateral_limit
+  of          ayb
+  filter      TRUCK_RMS
+  from        measured
+  value       maximum
+  limit       each truck_lateral_limit
+  clause      "49 CFR 213.333, table, truck lateral"
+  paraphrase  "The rms about the linear trend over 2 s stays within the limit."
+
+clause sampling "Wheel forces are recorded with 250 samples a second or more"
+  clause     "49 CFR 213.333, sampling"
+  judged by  "the person in charge of the measuring system"
+  note       "Read in the edition of 1998."
+
+clause sensors "Accelerometers of the car body are near its ends at floor level"
+  clause     "49 CFR 213.333, place of the accelerometers"
+  judged by  "the person in charge of the measuring system"
+  note       "Read in the edition of 1998."
+
+clause intervals "The vehicle is measured again at intervals, by the class of the track"
+  clause  "49 CFR 213.333, intervals of measurement"
+  note    "From memory."
+
+clause after_exceedance "What is done with a track or a vehicle after an exceedance"
+  clause  "49 CFR 213.333, action after an exceedance"
+  note    "From memory."
+
+clause qualification "A vehicle is qualified up to 10 mph above the speed that is asked for"
+  clause     "49 CFR 213.345"
+  judged by  "the person in charge of the qualification"
+  note       "Read in the edition of 2006."
+
+clause simulations "Simulations on track at the limits of its class; the model is validated by predictions on measured track geometry"
+  clause     "49 CFR 213, Appendix D"
+  judged by  "the person in charge of the qualification"
 
 verdict
   validated  when every limit holds

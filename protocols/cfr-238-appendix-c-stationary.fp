@@ -42,11 +42,18 @@ sections
   use  whole records
 
 quantity load "Wheel load on superelevation over that on level track"
-  of     Q
-  from   measured
-  value  mean / mean of Q_level
-  limit  each at least load_limit
-  in     -
+  of          Q
+  from        measured
+  value       mean / mean of Q_level
+  limit       each at least load_limit
+  in          -
+  clause      "49 CFR 238, Appendix C, stationary test"
+  paraphrase  "At rest on 6 in of superelevation each wheel carries more than 0.60 of its load on level"
+              "track."
+
+clause on_track "Forces of wheels and trucks while running"
+  clause     "49 CFR 238, Appendix C, running test"
+  judged by  "the person in charge of that test: protocol cfr-238-appendix-c"
 
 verdict
   validated  when every limit holds

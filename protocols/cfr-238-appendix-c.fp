@@ -101,41 +101,58 @@ sections
   use  whole records
 
 quantity single_wheel "L/V of a wheel"
-  of      wheel_lv
-  filter  OVER_STRETCH
-  from    measured
-  value   maximum
-  limit   each single_wheel_limit
+  of          wheel_lv
+  filter      OVER_STRETCH
+  from        measured
+  value       maximum
+  limit       each single_wheel_limit
+  clause      "49 CFR 238, Appendix C, single wheel L/V"
+  paraphrase  "The limit of Nadal with a friction of 0.5, over the time to travel 5 ft."
 
 quantity net_axle "Net lateral force of an axle over its static load"
-  of      net_lv
-  filter  OVER_STRETCH
-  from    measured
-  value   maximum
-  limit   each net_axle_limit
+  of          net_lv
+  filter      OVER_STRETCH
+  from        measured
+  value       maximum
+  limit       each net_axle_limit
+  clause      "49 CFR 238, Appendix C, net axle lateral force"
+  paraphrase  "The net lateral force of an axle stays within half of its static load."
 
 quantity wheel_load "Least vertical wheel load, share of the static one"
-  of      load_share
-  filter  sliding maximum stretch every sample
-  from    measured
-  value   minimum
-  limit   each at least load_limit
+  of          load_share
+  filter      sliding maximum stretch every sample
+  from        measured
+  value       minimum
+  limit       each at least load_limit
+  clause      "49 CFR 238, Appendix C, vertical wheel load"
+  paraphrase  "No wheel carries less than a tenth of its static load."
 
 quantity side_load_{truck} "Least vertical load of a side of truck {truck}, share of the static axle load"
-  for each  truck in I, II
-  of        side_share_{truck}
-  filter    sliding maximum stretch every sample
-  from      measured
-  value     minimum
-  limit     each at least side_load_limit
+  for each    truck in I, II
+  of          side_share_{truck}
+  filter      sliding maximum stretch every sample
+  from        measured
+  value       minimum
+  limit       each at least side_load_limit
+  clause      "49 CFR 238, Appendix C, vertical load of one side of a truck"
+  paraphrase  "Both wheels of one side together carry more than 0.20 of the static axle load."
 
 quantity truck_side_{truck} "L/V of a side of truck {truck}"
-  for each  truck in I, II
-  of        truck_lv_{truck}
-  filter    OVER_STRETCH
-  from      measured
-  value     maximum
-  limit     each truck_side_limit
+  for each    truck in I, II
+  of          truck_lv_{truck}
+  filter      OVER_STRETCH
+  from        measured
+  value       maximum
+  limit       each truck_side_limit
+  clause      "49 CFR 238, Appendix C, truck side L/V"
+  paraphrase  "The lateral forces of one side of a truck over its vertical forces stay within 0.6."
+
+clause at_rest "At rest on 6 in of superelevation each wheel carries more than 0.60 of its load on level track"
+  clause     "49 CFR 238, Appendix C, stationary test"
+  judged by  "the person in charge of that test: protocol cfr-238-appendix-c-stationary"
+
+clause acceptance "Accelerations of the car body in service and in the acceptance test"
+  clause  "49 CFR 238.427"
 
 verdict
   validated  when every limit holds

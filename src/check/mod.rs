@@ -4,6 +4,7 @@
 //! Checking goes on after an error, so that an author sees all of them in one run.
 
 mod cases;
+mod clauses;
 mod closed;
 mod compared;
 mod conditions;
@@ -404,6 +405,7 @@ impl Checker<'_> {
                 },
             })
             .collect();
+        let clauses = self.clauses()?;
         Some(Plan {
             name: head.own_name(),
             title: head.title_or_name(),
@@ -415,6 +417,7 @@ impl Checker<'_> {
                 .fields_named("leaves out")
                 .map(|field| field.value.text.clone())
                 .collect(),
+            clauses,
             axis: self.axis.clone()?,
             time,
             parameters,

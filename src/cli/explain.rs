@@ -8,7 +8,7 @@ use super::kit::*;
 use crate::catalog::entries;
 use crate::check::{
     self, Overrides,
-    plan::{Plan, Report},
+    plan::{Clause, Plan, Report},
 };
 use crate::graph;
 use crate::run::needs;
@@ -41,6 +41,8 @@ enum Stage {
     Graph,
     /// The channels, section data and vehicle data that a campaign must have.
     Needs,
+    /// The clauses that it names: computed by a rule, judged by a person, or not covered.
+    Clauses,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
@@ -115,6 +117,8 @@ impl Explain {
                     _ => super::needs::text(&plan, &needs),
                 }
             }
+            (Stage::Clauses, Format::Json) => pretty(&clauses_json(&plan)),
+            (Stage::Clauses, _) => clauses_text(&plan),
             (_, Format::Json) => pretty(&plan_json(&plan)),
             _ => plan_text(&plan),
         })
@@ -275,6 +279,47 @@ fn plan_json(plan: &Plan) -> Value {
         json["verdicts"] = json!(verdicts);
     }
     json
+}
+
+/// Each clause with what it asks for and what stands for it; then what the protocol leaves out.
+fn clauses_text(plan: &Plan) -> String {
+    let mut out = format!("{}: {}\n", plan.name, plan.title);
+    for clause in &plan.clauses {
+        let _ = writeln!(out, "\n{}: {}", clause.clause, clause.standing().in_words());
+        for says in &clause.says {
+            let _ = writeln!(out, "  {says}");
+        }
+        if !clause.rules.is_empty() {
+            let _ = writeln!(out, "  by  {}", clause.rules.join(", "));
+        }
+        if let Some(person) = &clause.judged_by {
+            let _ = writeln!(out, "  judged by  {person}");
+        }
+    }
+    if plan.clauses.is_empty() {
+        out += "\nno rule names a clause: add the field `clause` to rules\n";
+    }
+    for left in &plan.leaves_out {
+        let _ = writeln!(out, "\nleft out: {left}");
+    }
+    let without: Vec<&str> = without_clause(plan).collect();
+    if !without.is_empty() {
+        let _ = writeln!(out, "\nlimits without a clause: {}", without.join(", "));
+    }
+    out
+}
+
+fn clauses_json(plan: &Plan) -> Value {
+    let one = |clause: &Clause| json!({"clause": clause.clause, "says": clause.says, "standing": clause.standing().in_words(), "rules": clause.rules, "judged_by": clause.judged_by});
+    let clauses: Vec<Value> = plan.clauses.iter().map(one).collect();
+    let without: Vec<&str> = without_clause(plan).collect();
+    json!({"protocol": plan.name, "clauses": clauses, "leaves_out": plan.leaves_out, "limits_without_clause": without})
+}
+
+/// Quantities with limits that name no clause.
+fn without_clause(plan: &Plan) -> impl Iterator<Item = &str> {
+    let limited = plan.quantities.iter().filter(|one| !one.limits.is_empty());
+    limited.filter(|one| one.clause.is_none()).map(|one| one.id.as_str())
 }
 
 /// Estimates without a limit, each as written; no key where there are none.

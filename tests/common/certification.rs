@@ -89,6 +89,8 @@ pub fn certification() -> Certification {
         outcome: None,
         fishplate: THIS.into(),
         format: FORMAT,
+        language: "en".into(),
+        template: None,
         verdict_text: "not validated".into(),
         protocol: protocol(),
         campaign: campaign(&sections),
@@ -218,6 +220,8 @@ pub fn empty() -> Certification {
         outcome: None,
         fishplate: THIS.into(),
         format: FORMAT,
+        language: "en".into(),
+        template: None,
         verdict_text: "not assessable".into(),
         protocol: ProtocolInfo {
             name: "empty".into(),

@@ -128,6 +128,8 @@ pub fn certification() -> Certification {
         outcome: None,
         fishplate: THIS.into(),
         format: FORMAT,
+        language: "en".into(),
+        template: None,
         verdict_text: "not validated".into(),
         protocol: protocol(),
         campaign: campaign(),

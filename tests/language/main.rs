@@ -10,6 +10,7 @@ mod common {
 }
 
 mod check;
+mod clauses;
 mod generality;
 mod graph;
 mod init;

@@ -1,5 +1,6 @@
 //! The checked protocol: names resolved, numbers in SI, dimensions checked, parameters inserted.
 
+mod clause;
 mod estimate;
 mod expression;
 mod filter;
@@ -15,6 +16,7 @@ use crate::result::{self, Reason};
 use crate::source::{Span, Spanned};
 use crate::units::Unit;
 
+pub use clause::*;
 pub use estimate::*;
 pub use expression::*;
 pub use filter::*;
@@ -35,6 +37,8 @@ pub struct Plan {
     pub notes: Vec<String>,
     /// What of the standard it does not do.
     pub leaves_out: Vec<String>,
+    /// In the order of the text.
+    pub clauses: Vec<Clause>,
     pub axis: Axis,
     pub time: Option<Axis>,
     pub parameters: Vec<Parameter>,

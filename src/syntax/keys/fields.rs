@@ -34,6 +34,11 @@ pub(super) const OPTIONAL: Key = phrase(
 );
 pub(super) const CLAUSE: Key =
     text("clause", "Clause of the standard for the rule.", "Annex T, T.3");
+pub(super) const PARAPHRASE: Key = text(
+    "paraphrase",
+    "What the clause asks for, in own words; without it, the title of the block says so.",
+    "The largest values of simulation and measurement agree.",
+);
 pub(super) const SOURCE: Key =
     text("source", "Publication of the rule or number.", "Goetz & Polach, Table 1");
 pub(super) const UNCONFIRMED: Key = text(
