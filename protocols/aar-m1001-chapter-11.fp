@@ -12,10 +12,10 @@ protocol aar-m1001-chapter-11 "Wheel forces of a freight car, measured, in the m
   leaves out  "Roll angle, accelerations, buff and draft, and the regimes of the tests."
 
 parameter {name}_limit "{of}"
-  for each     name, limit, of in (wheel, 1.0, "Largest L/V of a wheel"),
+  for each     name, limit, of in (wheel, 1, "Largest L/V of a wheel"),
                (axle, 1.5, "Largest sum of L/V of an axle"),
                (truck_side, 0.6, "Largest L/V of a side of a truck"),
-               (load, 0.10, "Least vertical wheel load, share of the static one")
+               (load, 0.1, "Least vertical wheel load, share of the static one")
   default      {limit}
   range        0.01 to 3
   unconfirmed  "From memory; editions differ; the manual was not to hand."

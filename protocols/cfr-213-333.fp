@@ -21,14 +21,13 @@ parameter {name}_limit "{of}"
                (truck_side, 0.6, 0.1, 2, "Largest L/V of a side of a truck"), (lateral_peak_passenger,
                0.65 gn, 0.01 gn, 3 gn, "Car body lateral, peak to peak, passenger cars"),
                (lateral_peak_other, 0.75 gn, 0.01 gn, 3 gn, "Car body lateral, peak to peak, other vehicles"),
-               (lateral_rms_passenger, 0.10 gn, 0.01 gn, 3 gn,
+               (lateral_rms_passenger, 0.1 gn, 0.01 gn, 3 gn,
                "Car body lateral, rms about the trend, passenger cars"), (lateral_rms_other, 0.12 gn, 0.01 gn,
-               3 gn, "Car body lateral, rms about the trend, other vehicles"), (vertical_peak_passenger,
-               1.0 gn, 0.01 gn, 3 gn, "Car body vertical, peak to peak, passenger cars"),
-               (vertical_peak_other, 1.25 gn, 0.01 gn, 3 gn,
-               "Car body vertical, peak to peak, other vehicles"),
+               3 gn, "Car body lateral, rms about the trend, other vehicles"), (vertical_peak_passenger, 1 gn,
+               0.01 gn, 3 gn, "Car body vertical, peak to peak, passenger cars"), (vertical_peak_other,
+               1.25 gn, 0.01 gn, 3 gn, "Car body vertical, peak to peak, other vehicles"),
                (vertical_rms, 0.25 gn, 0.01 gn, 3 gn, "Car body vertical, rms about the trend"),
-               (truck_lateral, 0.30 gn, 0.01 gn, 3 gn, "Truck lateral, rms about the trend")
+               (truck_lateral, 0.3 gn, 0.01 gn, 3 gn, "Truck lateral, rms about the trend")
   default      {limit}
   range        {low} to {high}
   unconfirmed  "From memory; the edition in force was not to hand."

@@ -14,7 +14,7 @@ protocol gbt5599 "Dynamic performance of a vehicle, measured, in the manner of G
   leaves out  "The lateral stability by the acceleration of the frame."
 
 parameter {grade}_{class} "Largest ride index that is {grade}, {class}"
-  for each     grade, class, index in (excellent, coach, 2.5), (good, coach, 2.75), (qualified, coach, 3.0),
+  for each     grade, class, index in (excellent, coach, 2.5), (good, coach, 2.75), (qualified, coach, 3),
                (excellent, locomotive, 2.75), (good, locomotive, 3.10), (qualified, locomotive, 3.45),
                (excellent, wagon, 3.5), (good, wagon, 4.0), (qualified, wagon, 4.25)
   default      {index}

@@ -18,7 +18,7 @@ parameter weight_{channel} "Weight of {channel}"
   unconfirmed  "A choice of this text. The weights add up to 1."
 
 parameter {grade}_above "Weighted rating above which it is {grade}"
-  for each     grade, rating in (excellent, 0.94), (good, 0.80), (fair, 0.58)
+  for each     grade, rating in (excellent, 0.94), (good, 0.8), (fair, 0.58)
   default      {rating}
   range        0 to 1
   unconfirmed  "From memory; the standard was not to hand."

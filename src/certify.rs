@@ -15,11 +15,10 @@ use crate::problem::{Problems, error};
 use crate::result::{
     CampaignInfo, Certification, ChannelInfo, DataItem, FORMAT, FileHash, FilterInfo, Finding,
     FindingData, Kind, OriginInfo, ParameterInfo, ProtocolFile, ProtocolInfo, Remark, Removed,
-    THIS,
+    THIS, language,
 };
 use crate::run::{self, Outcome, Progress, Settings};
 use crate::syntax::document::Block;
-use crate::words;
 
 pub use about::About;
 pub use again::{Rules, Setting, again, confirmations};
@@ -116,7 +115,7 @@ pub fn certification(compiled: &Compiled, about: &About, outcome: Outcome) -> Ce
     Certification {
         fishplate: THIS.into(),
         format: FORMAT,
-        language: words::language(),
+        language: language(),
         template: None,
         verdict_text: Kind::of(&judged.quantities).verdict_words(judged.verdict).into(),
         verdict: judged.verdict,

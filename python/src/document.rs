@@ -19,7 +19,7 @@ use fishplate::report::document::{Block, Document, Fact, ResultBox, Tone};
 use fishplate::report::{comparison, diagnosis, study as report};
 use fishplate::result::comparison::Comparison;
 use fishplate::result::study::Study;
-use fishplate::robustness::{Asked as Kind, Settings, Synchronisation, Vary};
+use fishplate::robustness::{Asked as Kind, Margins, Settings, Synchronisation, Vary};
 
 /// What was found.
 #[derive(Debug)]
@@ -199,6 +199,7 @@ pub struct Studied {
     reduce: Option<usize>,
     most: Option<f64>,
     width: f64,
+    draws: Option<usize>,
     seed: u64,
 }
 
@@ -216,6 +217,9 @@ impl Studied {
                     .map(|(name, values)| Vary { name: name.clone(), values: values.clone() })
                     .collect(),
             ),
+            "margin" => {
+                Kind::Margin(Margins { draws: self.draws.unwrap_or(fishplate::robustness::DRAWS) })
+            }
             _ => Kind::Sections,
         }
     }

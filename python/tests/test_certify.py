@@ -169,6 +169,8 @@ def test_study_and_compare(coach, tmp_path):
     assert json.loads(study.json())["combinations"] > 0 and study.facts and study.tables()
     study.write(tmp_path / "study", pdf=False)
     assert (tmp_path / "study" / "report.html").stat().st_size > 10_000
+    margin = json.loads(fishplate.study(ROOT / "examples" / "coach-good", "margin", draws=0).json())
+    assert {"change", "of", "low", "high"} <= margin["margin"][0].keys() and margin["probability_right"] is None
     both = fishplate.compare(coach, ["en14363-2016-annex-t", "en14363-2016-annex-t-confidence"], sizes=[])
     verdicts = json.loads(both.json())["verdicts"]
     assert [verdict["verdict"] for verdict in verdicts][0] == "not validated"

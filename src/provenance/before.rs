@@ -84,7 +84,9 @@ pub fn upgrade(results: &mut Value) {
 }
 
 /// What results of this format did not state at first.
-const LATER: [&str; 7] = [
+const LATER: [&str; 9] = [
+    "/language",
+    "/template",
     "/provisional",
     "/deviations",
     "/protocol/own",
@@ -102,9 +104,29 @@ pub fn without_later(now: &mut Value, before: &Value) {
             notes.insert(at.min(notes.len()), note);
         }
     }
+    if before.get("language").is_none() {
+        now.get_mut("findings").into_iter().for_each(with_one_cause);
+    }
     for pointer in LATER.into_iter().filter(|pointer| before.pointer(pointer).is_none()) {
         let (parent, key) = pointer.rsplit_once('/').unwrap_or_default();
         each(now, parent.trim_start_matches('/'), &mut |entry| drop(entry.shift_remove(key)));
+    }
+}
+
+/// Findings with one cause each, of which two were one text.
+fn with_one_cause(findings: &mut Value) {
+    for finding in findings.as_array_mut().into_iter().flatten().filter_map(Value::as_object_mut) {
+        let texts = finding.shift_remove("causes");
+        let data = finding.shift_remove("causes_data");
+        if let (Some(Value::Array(texts)), Some(Value::Array(data))) = (texts, data) {
+            let texts: Vec<&str> = texts.iter().filter_map(Value::as_str).collect();
+            finding.insert("cause".into(), texts.join("; ").into());
+            let joined = data
+                .into_iter()
+                .reduce(|first, second| json!({"code": "both", "first": first, "second": second}));
+            finding.insert("cause_data".into(), joined.unwrap_or_default());
+        }
+        finding.get_mut("explains").into_iter().for_each(with_one_cause);
     }
 }
 
@@ -191,4 +213,22 @@ fn scope(text: &str, keys: Option<&Value>) -> Value {
     let rest = text.strip_prefix(known.as_str()).unwrap_or_default().trim_start_matches(", ");
     let condition = (!rest.is_empty() && rest != "all").then_some(rest);
     json!({"zones": zones, "keys": keys, "condition": condition})
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_causes_were_one_text() {
+        let said = |says: &str| json!({"code": "said", "says": says});
+        let finding =
+            json!({"cause": "a", "causes": ["a", "b"], "causes_data": [said("a"), said("b")]});
+        let none = json!({"cause": null, "causes": []});
+        let mut now = json!({"language": "en", "findings": [finding, none]});
+        without_later(&mut now, &json!({"findings": []}));
+        let both = json!({"code": "both", "first": said("a"), "second": said("b")});
+        let before = [json!({"cause": "a; b", "cause_data": both}), json!({"cause": null})];
+        assert_eq!(now, json!({"findings": before}));
+    }
 }

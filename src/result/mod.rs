@@ -62,6 +62,11 @@ pub const THIS: &str = env!("CARGO_PKG_VERSION");
 /// The form of the files of results. Those of the first versions state none.
 pub const FORMAT: u32 = 1;
 
+/// The language of the texts in results, by ISO 639-1.
+pub fn language() -> String {
+    "en".into()
+}
+
 /// A result as the text of its file: indented, ending in a line break.
 pub fn text(result: &impl Serialize) -> String {
     // Serialisation of plain values cannot fail.
@@ -75,7 +80,7 @@ pub struct Certification {
     pub fishplate: String,
     pub format: u32,
     /// Of the texts, by ISO 639-1; files of before are in English.
-    #[serde(default = "words::language")]
+    #[serde(default = "language")]
     pub language: String,
     /// SHA-256 of the template of the report; `None` for that of the program.
     #[serde(default)]

@@ -80,11 +80,6 @@ static FILLER: LazyLock<Environment<'static>> = LazyLock::new(|| {
     filler
 });
 
-/// The language of the table of texts, by ISO 639-1.
-pub fn language() -> String {
-    "en".into()
-}
-
 /// The text of a value of a result: of its code, with its fields put in.
 pub fn text(of: &impl Serialize) -> Text {
     Text(filled(&serde_json::to_value(of).unwrap_or_default()).to_string())

@@ -89,6 +89,8 @@ fn every_node_is_used() {
                 .iter()
                 .flat_map(|quantity| quantity.signals.iter().map(|signal| signal.filtered)),
         );
+        // What is reported ends in its number.
+        used.extend(graph.quantities.iter().flat_map(|quantity| &quantity.reports));
         // A quantity without limits ends in its values.
         let reported = graph.quantities.iter().filter(|quantity| quantity.limits.is_empty());
         used.extend(

@@ -266,14 +266,20 @@ def study(
     reduce: int | None = None,
     enumerate: float | None = None,
     width: float = 0.01,
+    draws: int | None = None,
     seed: int = 1,
     jobs: int | None = None,
     **parameters: Any,
 ) -> Report:
-    """How the verdict depends on the `sections`, on the synchronisation (`sync`), or on `parameters` and rules of the protocol (`vary`)."""
-    kinds = ("sections", "sync", "parameters")
+    """How the verdict depends on the `sections`, on the synchronisation (`sync`), or on `parameters` and rules of the protocol (`vary`).
+
+    `margin`: the smallest changes that flip it; with uncertainties in campaign.yaml, from `draws`, the probability that it is right.
+    """
+    kinds = ("sections", "sync", "parameters", "margin")
     if kind not in kinds:
         raise _wrong("kind", f"`{kind}` is no kind of study", f"known here: {', '.join(kinds)}")
+    if draws is not None and draws < 0:
+        raise _wrong("range", "`draws` must not be negative")
     if not 0 < width < 1 or not farthest > 0:
         raise _wrong("range", "`width` must be between 0 and 1, and `farthest` above 0")
     studied = {
@@ -286,6 +292,7 @@ def study(
         "reduce": reduce,
         "most": enumerate,
         "width": width,
+        "draws": draws,
         "seed": seed,
     }
     return _fishplate.study(_campaigns(campaign), _asked(protocol), _set(parameters), studied, jobs)
