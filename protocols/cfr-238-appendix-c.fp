@@ -14,7 +14,7 @@ protocol cfr-238-appendix-c "Suspension system of Tier II equipment, measured on
 
 parameter {name}_limit "{of}"
   for each  name, limit, of in (load, 0.1, "Wheel load must be above this share of the static one"),
-            (side_load, 0.20, "Load of a truck side must be above this share of the static axle load"),
+            (side_load, 0.2, "Load of a truck side must be above this share of the static axle load"),
             (net_axle, 0.5, "Net lateral force of an axle, share of its static load"),
             (truck_side, 0.6, "L/V of a side of a truck")
   default   {limit}

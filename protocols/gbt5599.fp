@@ -15,15 +15,15 @@ protocol gbt5599 "Dynamic performance of a vehicle, measured, in the manner of G
 
 parameter {grade}_{class} "Largest ride index that is {grade}, {class}"
   for each     grade, class, index in (excellent, coach, 2.5), (good, coach, 2.75), (qualified, coach, 3),
-               (excellent, locomotive, 2.75), (good, locomotive, 3.10), (qualified, locomotive, 3.45),
-               (excellent, wagon, 3.5), (good, wagon, 4.0), (qualified, wagon, 4.25)
+               (excellent, locomotive, 2.75), (good, locomotive, 3.1), (qualified, locomotive, 3.45),
+               (excellent, wagon, 3.5), (good, wagon, 4), (qualified, wagon, 4.25)
   default      {index}
   range        1 to 6
   unconfirmed  "From memory; the standard was not to hand."
 
 parameter {name} "{of}"
   for each     name, limit, of in (derailment_limit, 0.8, "Limit of the derailment coefficient"),
-               (derailment_limit_small, 1.0, "Limit of the derailment coefficient in small radii"),
+               (derailment_limit_small, 1, "Limit of the derailment coefficient in small radii"),
                (unloading_limit, 0.65, "Limit of the wheel unloading"),
                (axle_factor, 1, "Factor on the limit of the lateral force of an axle")
   default      {limit}
