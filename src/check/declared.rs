@@ -119,6 +119,7 @@ impl Checker<'_> {
             default: None,
             range: None,
             optional: self.optional(block)?,
+            computed: block.field(super::find::COMPUTED).is_some(),
             span: block.place(),
         })
     }

@@ -9,6 +9,9 @@ use super::quantities::MOST_COUNTED;
 pub const FOUND_SECTIONS: &str = "found sections";
 /// Where each field `keep` begins, and what stands before its groups.
 pub const AT_MOST: &str = "at most";
+/// Fields by which section data follow from others: of found sections, and of all.
+const FOUND: &str = "found";
+pub const COMPUTED: &str = "is";
 const FOR_EACH: &str = " for each ";
 
 impl Checker<'_> {
@@ -67,9 +70,9 @@ impl Checker<'_> {
             .field("prefer")
             .filter(|field| normalised(&field.value.text) != "first")
             .map(|field| {
-                self.of_signals(field, &[]).filter(|of| self.number_type(&of.expr).is_some())
+                self.of_section(field, &[]).filter(|of| self.number_type(&of.expr).is_some())
             });
-        let data = self.found_data(&blocks, rules);
+        let data = self.found_data(rules);
         let conditions = all(conditions.into_iter().map(|block| self.find_condition(block)));
         Some(Find {
             step: step?,
@@ -108,7 +111,7 @@ impl Checker<'_> {
 
     fn find_condition(&mut self, block: &Block) -> Option<FindCondition> {
         let field = self.required(block, "require")?;
-        let require = self.of_signals(field, &[]).filter(|of| self.flag_type(&of.expr).is_some());
+        let require = self.of_section(field, &[]).filter(|of| self.flag_type(&of.expr).is_some());
         let mut reach =
             |key: &str| block.field(key).map_or(Some(0.0), |field| self.along_axis(field, false));
         let (lead, tail) = (reach("lead"), reach("tail"));
@@ -123,14 +126,14 @@ impl Checker<'_> {
     }
 
     /// An expression over values of signals. `words` may stand for themselves.
-    fn of_signals(&mut self, field: &Field, words: &[String]) -> Option<OfSignals> {
+    fn of_section(&mut self, field: &Field, words: &[String]) -> Option<OfSection> {
         let of_records = Scope::reducing(None, self.axis_dimension());
         let mut scope = Scope { words: words.to_vec(), ..of_records };
         let expr = self.expression(&field.value, &mut scope)?;
         for input in &scope.inputs {
             self.found_before(input)?;
         }
-        Some(OfSignals { expr, inputs: scope.inputs, words: normalised(&field.value.text) })
+        Some(OfSection { expr, inputs: scope.inputs, words: normalised(&field.value.text) })
     }
 
     /// Sections are looked for before their data are known: signals cannot use them.
@@ -149,36 +152,76 @@ impl Checker<'_> {
         self.refuse(problem.also_if(needs, "this is known only when the section is found"))
     }
 
-    /// The fields `found` of section data, in an order in which each needs only those before it.
-    fn found_data(&mut self, blocks: &[Block], rules: &SectionRules) -> Option<Vec<FoundDatum>> {
-        let mut found: Vec<FoundDatum> = Vec::new();
-        let mut sound = true;
-        for block in blocks.iter().filter(|block| block.kind.text == "section") {
-            let Some(field) = block.field("found") else { continue };
+    /// Section data by their fields `found`, and those that are computed: each after those that it
+    /// needs.
+    fn found_data(&mut self, rules: &SectionRules) -> Option<Vec<DerivedDatum>> {
+        let computed = rules.computed.iter().cloned().map(Some);
+        let all = computed.chain(self.derived(FOUND, rules.zone)).collect();
+        self.in_order("found-loop", all, rules.zone)
+    }
+
+    /// Section data by their fields `is`: each after those that it needs.
+    pub fn computed_data(&mut self, zone: Option<usize>) -> Option<Vec<DerivedDatum>> {
+        let computed = self.derived(COMPUTED, zone);
+        self.in_order("computed-loop", computed, None)
+    }
+
+    /// Section data by one of the fields `found` and `is`, in the order of the text; `None` after a
+    /// problem.
+    fn derived(&mut self, key: &str, zone: Option<usize>) -> Vec<Option<DerivedDatum>> {
+        let mut all = Vec::new();
+        for block in self.blocks.clone().iter().filter(|block| block.kind.text == "section") {
             let columns = &self.names.columns;
             let named = columns.iter().position(|datum| datum.name == block.name_text());
-            let Some(column) = named else { continue };
-            if rules.zone == Some(column) {
-                self.tell(
-                    error("found-zone", "the zone of a found section follows from the conditions `where` of the zones", &field.key).help("remove the line"),
-                );
-                sound = false;
-                continue;
-            }
-            let datum = self.names.columns[column].clone();
-            let words =
-                if let DatumKind::Words(words) = &datum.kind { words.clone() } else { Vec::new() };
-            // A case that does not apply leaves the datum without a value, as an empty cell does.
-            self.partial = true;
-            let of = self.of_signals(field, &words);
-            self.partial = false;
-            match of.filter(|of| self.is_of_datum(&of.expr, &datum, field)) {
-                Some(of) => found.push(FoundDatum { column, of }),
-                None => sound = false,
-            }
+            let (Some(field), Some(column)) = (block.field(key), named) else { continue };
+            let datum = columns[column].clone();
+            let of = match datum.computed {
+                true if key == COMPUTED => {
+                    self.computed(block, field, &datum, zone == Some(column))
+                }
+                // Refused where it is computed.
+                true => continue,
+                false if zone == Some(column) => {
+                    let says = "the zone of a found section follows from the conditions `where` of the zones";
+                    self.refuse(error("found-zone", says, &field.key).help("remove the line"))
+                }
+                false => {
+                    // A case that does not apply leaves it without a value, as an empty cell does.
+                    self.partial = true;
+                    let of = self.of_section(field, &words_of(&datum));
+                    self.partial = false;
+                    of
+                }
+            };
+            let of = of.filter(|of| self.is_of_datum(&of.expr, &datum, field));
+            all.push(of.map(|of| DerivedDatum { column, of }));
         }
-        let ordered = self.in_order(found, rules.zone);
-        ordered.filter(|_| sound)
+        all
+    }
+
+    /// The field `is` of a section datum.
+    fn computed(
+        &mut self,
+        block: &Block,
+        field: &Field,
+        datum: &Datum,
+        is_zone: bool,
+    ) -> Option<OfSection> {
+        if is_zone {
+            let says = "the zone of a section is stated in the table of sections, and not computed";
+            let help = "remove the line; the field `where` of a zone checks what is stated";
+            return self.refuse(error("computed-zone", says, &field.key).help(help));
+        }
+        let others = [FOUND, "default", "optional", "column"];
+        if let Some(other) = others.iter().find_map(|key| block.field(key)) {
+            let says = format!("a datum that is computed has no `{}`", other.key.text);
+            let problem = error("computed-datum", says, &other.key);
+            let problem = problem.also(&field.key, "computed here");
+            return self.refuse(problem.help("remove one of the two"));
+        }
+        let mut scope = Scope { words: words_of(datum), ..Scope::section() };
+        let expr = self.expression(&field.value, &mut scope)?;
+        Some(OfSection { expr, inputs: Vec::new(), words: normalised(&field.value.text) })
     }
 
     fn is_of_datum(&mut self, expr: &Expr, datum: &Datum, field: &Field) -> bool {
@@ -213,12 +256,15 @@ impl Checker<'_> {
 
     fn in_order(
         &mut self,
-        mut left: Vec<FoundDatum>,
+        code: &'static str,
+        all: Vec<Option<DerivedDatum>>,
         zone: Option<usize>,
-    ) -> Option<Vec<FoundDatum>> {
-        let mut ordered: Vec<FoundDatum> = Vec::new();
+    ) -> Option<Vec<DerivedDatum>> {
+        let sound = all.iter().all(Option::is_some);
+        let mut left: Vec<DerivedDatum> = all.into_iter().flatten().collect();
+        let mut ordered: Vec<DerivedDatum> = Vec::new();
         while !left.is_empty() {
-            let waits = |datum: &FoundDatum| {
+            let waits = |datum: &DerivedDatum| {
                 datum.of.expr.any(&|part| matches!(part.kind, Kind::Column(of) if left.iter().any(|other| other.column == of)))
             };
             let Some(at) = left.iter().position(|datum| !waits(datum)) else {
@@ -227,28 +273,19 @@ impl Checker<'_> {
                     .map(|datum| format!("`{}`", self.names.columns[datum.column].name))
                     .collect();
                 let span = left[0].of.expr.span.span.clone();
-                let help = "let one of them follow from signals only: `mean of ...`";
-                return self.refuse(
-                    problem!(
-                        "found-loop",
-                        &span,
-                        "section data need each other: {}",
-                        names.join(", ")
-                    )
-                    .help(help),
-                );
+                let help = "let one of them follow from no other: from signals only (`found mean of ...`), or from the table of sections";
+                let says = format!("section data need each other: {}", names.join(", "));
+                return self.refuse(error(code, says, &span).help(help));
             };
             ordered.push(left.remove(at));
         }
-        for datum in &ordered {
-            let is_zone = |part: &Expr| matches!(part.kind, Kind::Column(of) if Some(of) == zone);
-            let of_zone = datum.of.expr.find(&is_zone).map(|part| part.span.span.clone());
-            if let Some(at) = of_zone {
-                return self.refuse(error("found-zone", "the zone of a found section follows from its data, so its data cannot depend on the zone", &at)
+        let is_zone = |part: &Expr| matches!(part.kind, Kind::Column(of) if Some(of) == zone);
+        if let Some(part) = ordered.iter().find_map(|datum| datum.of.expr.find(&is_zone)) {
+            let at = part.span.span.clone();
+            return self.refuse(error("found-zone", "the zone of a found section follows from its data, so its data cannot depend on the zone", &at)
                         .help("use it in a block `find`, where the zone is known"));
-            }
         }
-        Some(ordered)
+        Some(ordered).filter(|_| sound)
     }
 
     /// A constant along the axis: a step, a margin.
@@ -312,6 +349,11 @@ impl Checker<'_> {
         }
         Some(Keep { most: most as usize, each, words: normalised(text) })
     }
+}
+
+/// Words that stand for themselves where the datum is given.
+fn words_of(datum: &Datum) -> Vec<String> {
+    if let DatumKind::Words(words) = &datum.kind { words.clone() } else { Vec::new() }
 }
 
 /// Where a signal needs what is known only of a section: its data, its ends, one of its numbers.

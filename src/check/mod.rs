@@ -354,6 +354,7 @@ impl Checker<'_> {
             self.minimum_of_groups = minima.of_groups;
         }
         let zones: Vec<plan::Zone> = of("zone").filter_map(|block| self.zone(block)).collect();
+        sections.computed = self.computed_data(sections.zone).unwrap_or_default();
         sections.find = self.find(of("sections").next(), &sections, zones.len());
         sections.reports = self.reports_of_sections(of("sections").next());
         let checks = of("check").filter_map(|block| self.section_check(block)).collect();

@@ -23,8 +23,11 @@ pub fn overlay(parent: &mut Block, variant: &Block) {
         "compare" => says("from"),
         "from" => says("difference") || says("metric") || says("compare"),
         // What is absent has its default, or no value.
-        "default" => says("optional"),
-        "optional" => says("default"),
+        "default" => says("optional") || says("is"),
+        "optional" => says("default") || says("is"),
+        // A datum is computed, or it is found or in a table.
+        "found" | "column" => says("is"),
+        "is" => says("found") || says("column"),
         "in" => says("one of"),
         "one of" => says("in"),
         // A rule and the judgement of a person replace each other, too.

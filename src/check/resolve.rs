@@ -437,6 +437,7 @@ impl Checker<'_> {
                 kind: DatumKind::Campaign,
                 default: None,
                 optional: None,
+                computed: false,
                 range: None,
                 span: span.clone(),
             });

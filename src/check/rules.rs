@@ -147,6 +147,7 @@ impl Checker<'_> {
         let mut rules = SectionRules {
             whole_records: false,
             find: None,
+            computed: Vec::new(),
             margin: None,
             keep: None,
             zone: None,

@@ -12,7 +12,7 @@ use super::{
 };
 use crate::check::evaluate::{shape, words};
 use crate::check::plan::{
-    Evaluation, Expr, Input, Key, Kind, Limit, OfSignals, Plan, Plausibility, Position, Quantity,
+    Evaluation, Expr, Input, Key, Kind, Limit, OfSection, Plan, Plausibility, Position, Quantity,
     Report, Scope, Step, Taken, Test, Valued,
 };
 use crate::source::Span;
@@ -185,7 +185,7 @@ impl Builder {
 
     fn find(&mut self, plan: &Plan) -> FindNodes {
         let Some(find) = &plan.sections.find else { return FindNodes::default() };
-        let mut inputs = |of: &OfSignals| {
+        let mut inputs = |of: &OfSection| {
             of.inputs.iter().map(|input| self.input(input, None)).collect::<Vec<InputNode>>()
         };
         FindNodes {

@@ -19,7 +19,7 @@ pub fn check_data(plan: &Plan, campaign: &Campaign, problems: &mut Problems) {
         wanted::points(plan, campaigns, &facts, problems);
         return;
     }
-    let mut units = units::units(plan, campaigns, problems);
+    let mut units = units::units(plan, campaigns, &facts, problems);
     wanted::points(plan, campaigns, &facts, problems);
     if problems.any_error() {
         return;

@@ -495,6 +495,88 @@ fn sections_are_reduced_and_the_verdict_and_its_check_use_those_kept() {
     assert_eq!(traced.code, 0, "{}\n{}", traced.stdout, traced.stderr);
 }
 
+/// A class of the speed, which the zones and other data use. Its edges are the two constant speeds
+/// of the run, which are in the class above.
+const CLASSES: &str = r#"section class "Class of the speed"
+  one of  slow, medium, fast
+  is      slow when speed < 72 km/h, medium when speed < 86.4 km/h, otherwise fast
+
+section twice "Twice the speed where it is high"
+  in     km/h
+  found  2 * speed when class is fast, otherwise speed
+
+section pace "Half of it, in another unit"
+  in  m/s
+  is  twice / 2
+
+zone 1
+  where  direction is straight and class is fast
+"#;
+
+/// Data of found sections are computed from what is found, and the reverse: the places are those of
+/// the same conditions on the speed, the words and numbers those of the table that is written.
+#[test]
+fn data_of_found_sections_are_computed() {
+    let folder = campaign();
+    with(&folder, "classes.fp", CLASSES);
+    with(&folder, "speeds.fp", "zone 1\n  where  direction is straight and speed >= 86.4 km/h\n");
+    let (table, plain) = (sections(&folder, "classes.fp"), sections(&folder, "speeds.fp"));
+    assert_eq!(table[0][..9], plain[0]);
+    assert_eq!(table[0][9..], ["twice [km/h]"]);
+    assert!(table.len() < sections(&folder, "runs.fp").len());
+    assert!(table.iter().zip(&plain).skip(1).all(|(one, other)| one[..9] == other[..]));
+    assert_eq!(table.len(), plain.len());
+
+    let number = |text: &str| text.parse::<f64>().expect("a number");
+    let class = |speed: f64| match speed {
+        speed if speed < 72.0 => "slow",
+        speed if speed < 86.4 => "medium",
+        _ => "fast",
+    };
+    let certified = |folder: &TempDir| {
+        let protocol = path(folder, "classes.fp");
+        let certified = certify(folder.path(), &["--protocol", &protocol, "--only", "results"]);
+        assert_eq!(certified.ran.code, 0, "{}", certified.ran.stderr);
+        certified.results()["sections"].clone()
+    };
+    let found = certified(&folder);
+    let mut seen = Vec::new();
+    for (row, section) in table[1..].iter().zip(found.as_array().expect("a list")) {
+        let (speed, data) = (number(&row[7]), &section["columns"]);
+        let datum = |at: usize| data[at]["value"].as_str().expect("a text");
+        let doubled = if class(speed) == "fast" { 2.0 * speed } else { speed };
+        assert_eq!(datum(5), class(speed), "{speed}");
+        assert!((number(&row[9]) - doubled).abs() < 1e-6 * doubled, "{row:?}");
+        assert!((number(datum(7)) - doubled / 7.2).abs() < 1e-6 * doubled, "{row:?}");
+        seen.push(class(speed));
+    }
+    assert!(["medium", "fast"].iter().all(|class| seen.contains(class)), "{seen:?}");
+
+    // The table as it is written: the same sections, from the runs.
+    sections(&folder, "classes.fp");
+    fs::copy(path(&folder, "out.csv"), path(&folder, "sections.csv")).expect("copied");
+    let yaml = folder.path().join("campaign.yaml");
+    fs::write(&yaml, format!("{CAMPAIGN}sections: sections.csv\n")).expect("written");
+    assert_eq!(certified(&folder), found);
+
+    // What is computed is not stated of a run, whether its sections are found or in a table.
+    for rest in ["", "sections: sections.csv\n"] {
+        let stated = CAMPAIGN.replace("country: IT", "country: IT\n    class: fast") + rest;
+        fs::write(&yaml, stated).expect("written");
+        let ran = certify(folder.path(), &["--protocol", &path(&folder, "classes.fp")]).ran;
+        assert_eq!(ran.code, 2, "{}", ran.stdout);
+        for part in [
+            "error[computed-column]: the protocol computes `class`, and the campaign states it",
+            "campaign.yaml:9:12",
+            "classes.fp:4:9",
+            "help: remove the line, or rename it",
+        ] {
+            assert!(ran.stderr.contains(part), "`{part}` is not in:\n{}", ran.stderr);
+        }
+        assert_eq!(ran.stderr.matches("error[").count(), 1, "{}", ran.stderr);
+    }
+}
+
 #[test]
 fn what_cannot_be_found_is_told_with_its_place() {
     let refused = |change: &dyn Fn(&Path), protocol: &str, code: &str, says: &str| {

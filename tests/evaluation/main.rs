@@ -10,6 +10,7 @@ mod common {
 }
 
 mod comfort;
+mod computed;
 mod domain;
 mod estimates;
 mod metrics;

@@ -246,3 +246,19 @@ fn wanted_operation_sites_and_states_are_listed() {
         fishplate(&["explain", "en14363-2016-annex-t-application", "--stage", "needs"]).stdout;
     assert!(text.contains("columns of the table of wanted operation\n  point"), "{text}");
 }
+
+/// What the protocol computes is in no table; what needs it needs the column that it follows from.
+#[test]
+fn what_is_computed_is_not_asked_for() {
+    let protocol = "tests/cases/rule-sets/11-instability.fp";
+    let ran = fishplate(&["explain", protocol, "--stage", "needs", "--format", "json"]);
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    let needs: Value = serde_json::from_str(&ran.stdout).expect("JSON");
+    let sections = needs["sections"].as_array().expect("a list");
+    let find = |name: &str| sections.iter().find(|need| need["name"] == name);
+    assert!(find("class").is_none());
+    let conicity = find("conicity").expect("a column");
+    assert_eq!(conicity["required"], true);
+    let users = ["measured_instability", "simulated_instability", "difference"];
+    assert_eq!(conicity["quantities"], serde_json::json!(users));
+}

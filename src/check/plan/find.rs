@@ -12,26 +12,26 @@ pub struct Find {
     pub length: Option<Expr>,
     /// What is highest in the section that is taken of several that overlap; without it, the first
     /// is taken.
-    pub prefer: Option<OfSignals>,
+    pub prefer: Option<OfSection>,
     /// Section data, in an order in which each needs only those before it.
-    pub data: Vec<FoundDatum>,
+    pub data: Vec<DerivedDatum>,
     pub conditions: Vec<FindCondition>,
 }
 
-/// An expression over values of signals and section data.
+/// An expression over section data and values of signals.
 #[derive(Clone, Debug)]
-pub struct OfSignals {
+pub struct OfSection {
     pub expr: Expr,
     pub inputs: Vec<Input>,
     pub words: String,
 }
 
-/// A section datum that is taken from the signals of the section.
+/// A section datum that follows from others, or from the signals of a found section.
 #[derive(Clone, Debug)]
-pub struct FoundDatum {
+pub struct DerivedDatum {
     /// Index into [`Plan::columns`](super::Plan::columns).
     pub column: usize,
-    pub of: OfSignals,
+    pub of: OfSection,
 }
 
 /// A condition that a found section satisfies.
@@ -39,7 +39,7 @@ pub struct FoundDatum {
 pub struct FindCondition {
     pub name: String,
     pub title: String,
-    pub require: OfSignals,
+    pub require: OfSection,
     /// How far before and behind the section its signals are looked at too; SI of the axis.
     pub lead: f64,
     pub tail: f64,

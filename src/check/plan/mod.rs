@@ -159,7 +159,8 @@ pub enum SetBy {
     CommandLine,
 }
 
-/// A value that the vehicle file or the table of sections must contain.
+/// A value that the vehicle file or the table of sections must contain, or of a section a value
+/// that the protocol computes.
 #[derive(Clone, Debug)]
 pub struct Datum {
     pub name: String,
@@ -171,9 +172,18 @@ pub struct Datum {
     /// Whether campaigns may omit it. Rules that depend on it then apply as far as they hold for
     /// every value.
     pub optional: Option<Optional>,
+    /// Whether the protocol computes it from others: [`SectionRules::computed`].
+    pub computed: bool,
     /// Allowed values of a number; `None` where the protocol states none.
     pub range: Option<DatumRange>,
     pub span: Span,
+}
+
+impl Datum {
+    /// Whether a table states it, or a campaign of its run.
+    pub fn is_stated(&self) -> bool {
+        !self.computed && self.kind != DatumKind::Campaign
+    }
 }
 
 /// What follows for a rule from the absence of something that it needs and that may be absent.

@@ -227,6 +227,8 @@ pub struct SectionRules {
     pub whole_records: bool,
     /// How sections are found in the runs of a campaign that has no table of sections.
     pub find: Option<Find>,
+    /// Data that follow from others, each after those that it reads.
+    pub computed: Vec<super::DerivedDatum>,
     /// Record that there must be on each side of a found section, SI of the axis; without it, the
     /// length of the section.
     pub margin: Option<f64>,

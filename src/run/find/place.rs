@@ -311,10 +311,10 @@ impl<'a> Rules<'a> {
 }
 
 /// A value as the table of sections states it, so that a zone follows from the table as it does
-/// from the run.
+/// from the run. What is computed is not in the table.
 fn written(datum: &Datum, value: Scalar) -> Scalar {
     match (value, &datum.kind) {
-        (Scalar::Number(value), DatumKind::Number(unit)) => {
+        (Scalar::Number(value), DatumKind::Number(unit)) if !datum.computed => {
             let rounded = format!("{:.*e}", DIGITS - 1, unit.from_si(value)).parse();
             Scalar::Number(rounded.map_or(value, |number: f64| unit.to_si(number)))
         }
@@ -325,7 +325,7 @@ fn written(datum: &Datum, value: Scalar) -> Scalar {
 /// Whether a column can only come from the campaign.
 pub fn is_stated(plan: &Plan, find: &Find, column: usize) -> bool {
     plan.sections.zone != Some(column)
-        && plan.columns[column].kind != DatumKind::Campaign
+        && plan.columns[column].is_stated()
         && find.data.iter().all(|datum| datum.column != column)
 }
 

@@ -9,7 +9,7 @@ use crate::data::table::Table;
 use crate::data::write::table_csv;
 use crate::problem::{Problem, Problems, nearest};
 use crate::result::Reason;
-use crate::run::sections::{of_run, trimmed};
+use crate::run::sections::{computed_of_runs, of_run, trimmed};
 
 /// What the table of found sections is called in messages: it is in no file.
 const NAME: &str = "found sections";
@@ -20,8 +20,9 @@ const LINE: &str = "line";
 /// Section data that are neither found nor have a default must be stated of every run, and what is
 /// stated must be possible.
 ///
-/// Problems: `missing-run-data`, `wrong-run-data`.
+/// Problems: `missing-run-data`, `wrong-run-data`, `computed-column`.
 pub fn check_facts(plan: &Plan, find: &Find, campaign: &Campaign, problems: &mut Problems) {
+    computed_of_runs(plan, campaign, problems);
     let stated = || {
         (0..plan.columns.len())
             .filter(|&index| is_stated(plan, find, index))
@@ -67,9 +68,8 @@ pub fn table(
     offsets: Option<&[f64]>,
 ) -> Result<Table, Problem> {
     let axis = &plan.axis.unit;
-    let columns: Vec<usize> = (0..plan.columns.len())
-        .filter(|index| plan.columns[*index].kind != DatumKind::Campaign)
-        .collect();
+    let columns: Vec<usize> =
+        (0..plan.columns.len()).filter(|index| plan.columns[*index].is_stated()).collect();
     let of_line = places.iter().any(|(run, _)| run.fact(LINE).is_some())
         && plan.columns.iter().all(|datum| datum.key != "track");
     let heading = |datum: &Datum, zone: bool| match &datum.kind {

@@ -100,6 +100,12 @@ impl Users {
             list.push(user.to_string());
         }
     }
+
+    fn join(&mut self, other: &Self) {
+        other.quantities.iter().for_each(|user| self.add(user, true));
+        other.rules.iter().for_each(|user| self.add(user, false));
+        self.of_requirement |= other.of_requirement;
+    }
 }
 
 /// A column of the records.
@@ -142,8 +148,7 @@ pub fn needs(plan: &Plan, graph: &Graph) -> Needs {
         sections.push(given("section", "Name of the section and of its records", None, "sections"));
         sections.push(given("start", "Start of the section", Some(&plan.axis.unit), "sections"));
         sections.push(given("end", "End of the section", Some(&plan.axis.unit), "sections"));
-        let own =
-            plan.columns.iter().zip(columns).filter(|(datum, _)| datum.kind != DatumKind::Campaign);
+        let own = plan.columns.iter().zip(columns).filter(|(datum, _)| datum.is_stated());
         sections.extend(own.map(of_data));
         let mut others = of_every_table(plan);
         others.retain(|need| sections.iter().all(|known| known.key != need.key));
@@ -226,8 +231,8 @@ fn application(plan: &Plan) -> Vec<DatumNeed> {
     let point = given(POINT_KEY, "Name of the point of wanted operation", None, "");
     let mut needs = vec![DatumNeed { users: users(&|_| true), ..point }];
     for (index, datum) in plan.columns.iter().enumerate() {
-        let users = users(&|domain| wanted_columns(domain).contains(&index));
-        if datum.kind != DatumKind::Campaign && !users.rules.is_empty() {
+        let users = users(&|domain| wanted_columns(plan, domain).contains(&index));
+        if datum.is_stated() && !users.rules.is_empty() {
             needs.push(datum_need(datum, users));
         }
     }
@@ -420,6 +425,15 @@ fn data_users(plan: &Plan) -> [Vec<Users>; 2] {
                 _ => {}
             });
         }
+    }
+    // What needs a datum needs those that it is computed from.
+    for datum in plan.sections.computed.iter().rev() {
+        let of = columns[datum.column].clone();
+        datum.of.expr.visit(&mut |part| match part.kind {
+            Kind::Column(index) => columns[index].join(&of),
+            Kind::Vehicle(index) => vehicle[index].join(&of),
+            _ => {}
+        });
     }
     [columns, vehicle]
 }

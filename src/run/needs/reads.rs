@@ -1,7 +1,7 @@
 //! What the rules of a protocol read beside the nodes of the graph.
 
 use crate::check::plan::{
-    Estimate, EstimateKind, Evaluation, Expr, Independent, Input, Key, Limit, OfGroup, OfSignals,
+    Estimate, EstimateKind, Evaluation, Expr, Independent, Input, Key, Limit, OfGroup, OfSection,
     Plan, Quantity, Records, Report, Scope, Taking, Test, Valued,
 };
 
@@ -27,7 +27,7 @@ pub fn rules(plan: &Plan) -> Vec<(String, bool, Reads<'_>)> {
     plan.sections.reports.iter().for_each(|report| sections.report(report));
     add("sections".into(), sections);
     if let Some(find) = &plan.sections.find {
-        for datum in &find.data {
+        for datum in find.data.iter().filter(|datum| !plan.columns[datum.column].computed) {
             add(format!("found {}", plan.columns[datum.column].key), Reads::signals(&datum.of));
         }
         for condition in &find.conditions {
@@ -35,7 +35,7 @@ pub fn rules(plan: &Plan) -> Vec<(String, bool, Reads<'_>)> {
         }
         let mut rest = Reads::default();
         rest.exprs.extend(&find.length);
-        find.prefer.iter().for_each(|prefer| rest.of_signals(prefer));
+        find.prefer.iter().for_each(|prefer| rest.of_section(prefer));
         add("find".into(), rest);
     }
     if let Some(keep) = &plan.sections.keep {
@@ -71,9 +71,9 @@ pub fn rules(plan: &Plan) -> Vec<(String, bool, Reads<'_>)> {
 }
 
 impl<'a> Reads<'a> {
-    fn signals(of: &'a OfSignals) -> Self {
+    fn signals(of: &'a OfSection) -> Self {
         let mut reads = Self::default();
-        reads.of_signals(of);
+        reads.of_section(of);
         reads
     }
 
@@ -101,7 +101,7 @@ impl<'a> Reads<'a> {
         rule.minimum_of_groups.iter().for_each(|minimum| self.scope(&minimum.scope));
     }
 
-    fn of_signals(&mut self, of: &'a OfSignals) {
+    fn of_section(&mut self, of: &'a OfSection) {
         self.exprs.push(&of.expr);
         self.inputs(&of.inputs);
     }

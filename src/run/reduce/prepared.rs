@@ -62,7 +62,7 @@ impl<'a> Prepared<'a> {
         }
         members(plan, campaigns, &mut problems);
         let facts = Facts::read(plan, campaigns, &mut problems);
-        let mut units = units::units(plan, campaigns, &mut problems);
+        let mut units = units::units(plan, campaigns, &facts, &mut problems);
         let wanted = wanted::points(plan, campaigns, &facts, &mut problems);
         if problems.any_error() {
             return Err(problems);

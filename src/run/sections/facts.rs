@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use serde::{Deserialize, Serialize};
 
 use super::unit::Unit;
-use crate::check::evaluate::{flag, words};
+use crate::check::evaluate::{evaluate, flag, words};
 use crate::check::plan::{Datum, DatumKind, Expr, Plan, Scalar};
 use crate::check::values::Values;
 use crate::data::Campaigns;
@@ -77,6 +77,12 @@ impl Unit {
             extent: self.extent,
             ..Known::vehicle(facts.of(self))
         }
+    }
+
+    /// Puts in the data that the protocol computes.
+    pub fn compute(&mut self, plan: &Plan, facts: &Facts) {
+        let known = Known { extent: self.extent, ..Known::vehicle(facts.of(self)) };
+        compute(plan, &mut self.columns, &known);
     }
 }
 
@@ -301,6 +307,15 @@ pub struct Known<'a> {
     pub limits: Option<&'a (dyn Limits + Sync)>,
     /// See [`Values::rounding`].
     pub rounding: f64,
+}
+
+/// Puts in the section data that the protocol computes from others. Where one cannot be computed,
+/// it has the reason.
+pub fn compute(plan: &Plan, columns: &mut [Result<Scalar, Reason>], known: &Known<'_>) {
+    for datum in &plan.sections.computed {
+        let known = Known { columns: Some(columns), ..*known };
+        columns[datum.column] = evaluate(&datum.of.expr, &known);
+    }
 }
 
 /// Limits that other limits refer to.

@@ -24,4 +24,4 @@ pub use facts::{
     trimmed, vehicle_item,
 };
 pub use unit::{Extent, Stretch, Unit, share_stretches};
-pub use units::of_run;
+pub use units::{computed_of_runs, of_run};

@@ -14,7 +14,12 @@ use crate::result::{Reason, SectionResult};
 use crate::units::Unit as OfMeasure;
 
 /// The sections of all campaigns, one campaign after the other.
-pub fn units(plan: &Plan, campaigns: Campaigns<'_>, problems: &mut Problems) -> Vec<Unit> {
+pub fn units(
+    plan: &Plan,
+    campaigns: Campaigns<'_>,
+    facts: &Facts,
+    problems: &mut Problems,
+) -> Vec<Unit> {
     let mut all: Vec<Unit> = Vec::new();
     // Sections of different campaigns are of one site only if the column `site` says so.
     let mut sites: Vec<(String, usize, String)> = Vec::new();
@@ -42,6 +47,7 @@ pub fn units(plan: &Plan, campaigns: Campaigns<'_>, problems: &mut Problems) -> 
                     }
                 }
             }
+            unit.compute(plan, facts);
             all.push(unit);
         }
         vehicles += campaign.vehicles.len();
@@ -148,9 +154,11 @@ fn of_campaign(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Vec
         default: None,
         range: None,
         optional: None,
+        computed: false,
         span: plan.axis.span.clone(),
     };
     let (start, end) = (extent_datum("start"), extent_datum("end"));
+    computed_of_runs(plan, campaign, problems);
     let mut missing = false;
     // What is stated of every run needs no column.
     let of_runs = |datum: &&Datum| {
@@ -258,6 +266,26 @@ pub fn of_run(datum: &Datum, run: &Run, campaign: &str) -> Result<Scalar, Reason
     })
 }
 
+fn stated_twice(datum: &Datum, called: &str) -> Problem {
+    let says = format!("the protocol computes `{}`, and the {called} states it", datum.key);
+    Problem::error("computed-column", says).also(&datum.span, "computed here")
+}
+
+/// Reports what is stated of runs although the protocol computes it.
+///
+/// Problems: `computed-column`.
+pub fn computed_of_runs(plan: &Plan, campaign: &Campaign, problems: &mut Problems) {
+    for datum in plan.columns.iter().filter(|datum| datum.computed) {
+        for fact in campaign.runs().iter().filter_map(|run| run.fact(&datum.key)) {
+            problems.push(
+                stated_twice(datum, "campaign")
+                    .at(&fact.value.span)
+                    .help("remove the line, or rename it"),
+            );
+        }
+    }
+}
+
 /// Reports a declared column that is missing or has a unit of another dimension.
 pub fn column_missing(
     datum: &Datum,
@@ -268,7 +296,7 @@ pub fn column_missing(
         return false;
     }
     let Some(index) = table.column(&datum.key) else {
-        if datum.default.is_some() || datum.optional.is_some() {
+        if datum.computed || datum.default.is_some() || datum.optional.is_some() {
             return false;
         }
         let known: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
@@ -281,6 +309,12 @@ pub fn column_missing(
         return true;
     };
     let column = &table.columns[index];
+    if datum.computed {
+        problems.push(
+            stated_twice(datum, called).at(&column.span).help("remove the column, or rename it"),
+        );
+        return true;
+    }
     let DatumKind::Number(unit) = &datum.kind else { return false };
     match column.unit(Some(unit.dimension)) {
         Ok(_) => false,

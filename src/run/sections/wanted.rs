@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::facts::{Facts, Known, Vehicle};
+use super::facts::{Facts, Known, Vehicle, compute};
 use super::units::{Row, column_missing};
 use crate::check::evaluate::number;
 use crate::check::plan::{Domain, Expr, Kind, Plan, Scalar};
@@ -42,7 +42,8 @@ pub fn points(
         return Vec::new();
     }
     let mut missing = false;
-    for index in plan.domains.iter().flat_map(columns).collect::<std::collections::BTreeSet<_>>() {
+    let read = plan.domains.iter().flat_map(|domain| columns(plan, domain));
+    for index in read.collect::<std::collections::BTreeSet<_>>() {
         for (_, table) in &tables {
             missing |= column_missing(
                 &plan.columns[index],
@@ -61,14 +62,21 @@ pub fn points(
 }
 
 /// Columns that a domain reads.
-pub fn columns(domain: &Domain) -> Vec<usize> {
+pub fn columns(plan: &Plan, domain: &Domain) -> Vec<usize> {
     let mut found = domain.each.clone();
-    let mut see = |part: &Expr| {
+    let see = |part: &Expr, found: &mut Vec<usize>| {
         if let Kind::Column(index) = part.kind {
             found.push(index);
         }
     };
-    domain.over.iter().for_each(|coordinate| coordinate.expr.visit(&mut see));
+    let coordinates = domain.over.iter();
+    coordinates.for_each(|one| one.expr.visit(&mut |part| see(part, &mut found)));
+    // And those that they are computed from.
+    for datum in plan.sections.computed.iter().rev() {
+        if found.contains(&datum.column) {
+            datum.of.expr.visit(&mut |part| see(part, &mut found));
+        }
+    }
     found
 }
 
@@ -79,7 +87,7 @@ fn of_domain(
     facts: &Facts,
     problems: &mut Problems,
 ) -> Vec<Point> {
-    let needed = columns(domain);
+    let needed = columns(plan, domain);
     let mut found = Vec::new();
     for (row, name) in table.names().enumerate() {
         let cells = Row {
@@ -110,7 +118,7 @@ fn of_domain(
             problems.push(problem.also(&domain.span, "the domain"));
             continue;
         }
-        match point(domain, name, &columns, facts) {
+        match point((plan, domain), name, &columns, facts) {
             Ok(point) => found.push(point),
             Err(reason) => problems.push(wrong(name, &reason).also(&domain.span, "the domain")),
         }
@@ -125,13 +133,13 @@ fn wrong(cell: &Cell, reason: &Reason) -> Problem {
 
 /// A point, which must be the same for every vehicle.
 fn point(
-    domain: &Domain,
+    (plan, domain): (&Plan, &Domain),
     name: &Cell,
     columns: &[Result<Scalar, Reason>],
     facts: &Facts,
 ) -> Result<Point, Reason> {
     let mut of_vehicles =
-        facts.vehicles.iter().map(|vehicle| of_vehicle(domain, name, columns, vehicle));
+        facts.vehicles.iter().map(|vehicle| of_vehicle((plan, domain), name, columns, vehicle));
     let first = of_vehicles.next().ok_or(Reason::NoVehicle)??;
     for other in of_vehicles {
         if other? != first {
@@ -142,12 +150,14 @@ fn point(
 }
 
 fn of_vehicle(
-    domain: &Domain,
+    (plan, domain): (&Plan, &Domain),
     name: &Cell,
     columns: &[Result<Scalar, Reason>],
     vehicle: &Vehicle,
 ) -> Result<Point, Reason> {
-    let known = Known { columns: Some(columns), ..Known::vehicle(vehicle) };
+    let mut columns = columns.to_vec();
+    compute(plan, &mut columns, &Known::vehicle(vehicle));
+    let known = Known { columns: Some(&columns), ..Known::vehicle(vehicle) };
     let values = domain
         .over
         .iter()

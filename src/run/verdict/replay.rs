@@ -37,7 +37,7 @@ const ROUNDING: f64 = 1e-9;
 /// The result does not agree with the protocol, in words.
 pub fn replay(plan: &Plan, results: &Certification) -> Result<Replayed, String> {
     let facts = facts(plan, results)?;
-    let mut units = units(plan, results)?;
+    let mut units = units(plan, &facts, results)?;
     let mut values = vec![SectionValues::default(); units.len()];
     let mut contradictions = Vec::new();
     for (index, quantity) in plan.quantities.iter().enumerate() {
@@ -188,7 +188,7 @@ fn vehicle(plan: &Plan, of: Option<String>, data: &[&str]) -> Result<Vehicle, St
     Ok(Vehicle { of, assumed: vec![false; data.len()], data })
 }
 
-fn units(plan: &Plan, results: &Certification) -> Result<Vec<Unit>, String> {
+fn units(plan: &Plan, facts: &Facts, results: &Certification) -> Result<Vec<Unit>, String> {
     let axis = &plan.axis.unit;
     let nowhere = Source::new("results.json", "").whole();
     let place = |name: &str| results.sections.iter().position(|other| other.section == name);
@@ -220,7 +220,7 @@ fn units(plan: &Plan, results: &Certification) -> Result<Vec<Unit>, String> {
         let cell = Spanned::new(section.section.clone(), nowhere.clone());
         let site = place(&section.site).or_else(|| place(&section.section)).unwrap_or_default();
         let columns = plan.columns.iter().zip(&section.columns).map(column).collect();
-        Ok(Unit {
+        let mut unit = Unit {
             campaign_name: section.campaign.clone(),
             vehicle: vehicles.get_index_of(&section.vehicle).ok_or_else(none)?,
             zone: section.zone.clone(),
@@ -231,7 +231,17 @@ fn units(plan: &Plan, results: &Certification) -> Result<Vec<Unit>, String> {
                 .then(|| section.reason.clone().unwrap_or_else(|| Reason::said(""))),
             checks: section.checks.clone(),
             ..Unit::new(&cell, site, columns)
-        })
+        };
+        // Why a computed datum has no value follows from the others. A value is as recorded:
+        // numbers are rounded in a result, and one at an edge may come to lie in another class.
+        let recorded = unit.columns.clone();
+        unit.compute(plan, facts);
+        for (own, recorded) in unit.columns.iter_mut().zip(recorded) {
+            if own.is_ok() || recorded.is_ok() {
+                *own = recorded;
+            }
+        }
+        Ok(unit)
     };
     results.sections.iter().map(one).collect()
 }
@@ -301,7 +311,7 @@ pub fn operations(
     section: &str,
 ) -> Result<Vec<NodeId>, String> {
     let facts = facts(plan, results)?;
-    let units = units(plan, results)?;
+    let units = units(plan, &facts, results)?;
     let unit = units
         .iter()
         .find(|unit| unit.name == section)

@@ -189,7 +189,7 @@ pub const KINDS: &[Kind] = &[
     block(
         "section",
         "section data",
-        "A column of the table of sections. Rules use it by its name.",
+        "A column of the table of sections, or a value computed from others. Rules use it by its name.",
         &[
             FOR_EACH,
             phrase("in", "The unit of a number.", "m"),
@@ -213,6 +213,11 @@ pub const KINDS: &[Kind] = &[
                 "found",
                 "The value of a section that is found in a run: an expression of values of its signals and of other section data.",
                 "1 / |mean of curvature| when direction is not straight",
+            ),
+            phrase(
+                "is",
+                "The value, computed from other section data and vehicle data. The table of sections then has no such column.",
+                "low when conicity < 0.1, medium when conicity < 0.25, otherwise high",
             ),
             NOTE,
         ],
