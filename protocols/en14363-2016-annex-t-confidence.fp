@@ -10,6 +10,6 @@ protocol en14363-2016-annex-t-confidence "EN 14363:2016 Annex T with 95 % confid
 quantity {name}
   for each  name in Y_qst, Q_qst, YQ_qst, SigmaY_qst, Y_max, Q_max, YQ_max, SigmaY_max, ay_rms, az_rms,
             ay_max, az_max
-  limit     (upper 95 % of std by bootstrap) std
-  limit     (upper 95 % of mean by bootstrap) mean
-  limit     (lower 95 % of mean by bootstrap) mean
+  limit     (upper 95 % of std by bootstrap) limit of std
+  limit     (upper 95 % of mean by bootstrap) limit of mean
+  limit     (lower 95 % of mean by bootstrap) limit of mean

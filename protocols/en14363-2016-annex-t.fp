@@ -764,7 +764,7 @@ quantity Y_qst "Quasi-static guiding force"
   value       median
   difference  quasi_static_difference
   limit       std 5 kN
-  limit       mean mean_limit_share of std
+  limit       mean mean_limit_share of limit of std
   source      "Table 1"
 
 quantity Q_qst "Quasi-static vertical wheel force"
@@ -774,7 +774,7 @@ quantity Q_qst "Quasi-static vertical wheel force"
   value       median
   difference  quasi_static_difference
   limit       std 4 kN * (1 + 0.01 * Q0/kN)
-  limit       mean mean_limit_share of std
+  limit       mean mean_limit_share of limit of std
   source      "Table 1"
 
 quantity YQ_qst "Quasi-static ratio Y/Q"
@@ -784,7 +784,7 @@ quantity YQ_qst "Quasi-static ratio Y/Q"
   value       median
   difference  quasi_static_difference
   limit       std 0.07
-  limit       mean mean_limit_share of std
+  limit       mean mean_limit_share of limit of std
   source      "Table 1"
 
 quantity SigmaY_qst "Quasi-static sum of guiding forces"
@@ -794,7 +794,7 @@ quantity SigmaY_qst "Quasi-static sum of guiding forces"
   value       median
   difference  quasi_static_difference
   limit       std 6 kN
-  limit       mean mean_limit_share of std
+  limit       mean mean_limit_share of limit of std
   source      "Table 1"
 
 quantity Y_max "Guiding force, maximum"
@@ -804,7 +804,7 @@ quantity Y_max "Guiding force, maximum"
   value       extreme_value
   difference  magnitudes
   limit       std 9 kN
-  limit       mean mean_limit_share of std
+  limit       mean mean_limit_share of limit of std
   source      "Table 1"
   note        "Absolute values of simulation and measurement."
 
@@ -815,7 +815,7 @@ quantity Q_max "Vertical wheel force, maximum"
   value       p99.85
   difference  magnitudes
   limit       std 6 kN * (1 + 0.01 * Q0/kN)
-  limit       mean mean_limit_share of std
+  limit       mean mean_limit_share of limit of std
   source      "Table 1"
   note        "Absolute values of simulation and measurement."
 
@@ -826,7 +826,7 @@ quantity YQ_max "Ratio Y/Q, maximum"
   value       extreme_value
   difference  magnitudes
   limit       std 0.1
-  limit       mean mean_limit_share of std
+  limit       mean mean_limit_share of limit of std
   source      "Table 1"
   note        "Absolute values of simulation and measurement."
 
@@ -837,7 +837,7 @@ quantity SigmaY_max "Sum of guiding forces, maximum"
   value       extreme_sum
   difference  magnitudes
   limit       std 9 kN
-  limit       mean mean_limit_share of std
+  limit       mean mean_limit_share of limit of std
   source      "Table 1"
   note        "Absolute values of simulation and measurement."
 
@@ -848,7 +848,7 @@ quantity ay_rms "Car body lateral acceleration, rms value"
   value       rms
   difference  signed
   limit       std 0.15 m/s^2, doubled when lighter_requirements
-  limit       mean mean_limit_share of std
+  limit       mean mean_limit_share of limit of std
   source      "Table 1"
 
 quantity az_rms "Car body vertical acceleration, rms value"
@@ -858,7 +858,7 @@ quantity az_rms "Car body vertical acceleration, rms value"
   value       rms
   difference  signed
   limit       std 0.15 m/s^2, doubled when lighter_requirements
-  limit       mean mean_limit_share of std
+  limit       mean mean_limit_share of limit of std
   source      "Table 1"
 
 quantity ay_max "Car body lateral acceleration, maximum"
@@ -868,7 +868,7 @@ quantity ay_max "Car body lateral acceleration, maximum"
   value       extreme_lateral
   difference  magnitudes
   limit       std 0.4 m/s^2, doubled when lighter_requirements
-  limit       mean mean_limit_share of std
+  limit       mean mean_limit_share of limit of std
   source      "Table 1"
   note        "Absolute values of simulation and measurement."
 
@@ -879,7 +879,7 @@ quantity az_max "Car body vertical acceleration, maximum"
   value       extreme_vertical
   difference  magnitudes
   limit       std 0.4 m/s^2, doubled when lighter_requirements
-  limit       mean mean_limit_share of std
+  limit       mean mean_limit_share of limit of std
   source      "Table 1"
   note        "Absolute values of simulation and measurement."
 

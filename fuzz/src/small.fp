@@ -60,7 +60,7 @@ quantity Y_max "Guiding force, maximum"
   value       larger of |p0.15|, |p99.85|
   difference  magnitudes
   limit       std 9 kN * (1 + 0.01 * Q0/kN), doubled when vehicle.category is freight
-  limit       mean share of std
+  limit       mean share of limit of std
 
 quantity Y_outer "Guiding force of the outer wheel"
   of          Y at side outer

@@ -184,16 +184,22 @@ impl Checker<'_> {
             return Some(self.estimate_named(path, &written, span, scope));
         }
         let dimension = scope.values()?;
-        if path == COUNT && !self.names.parameter_blocks.contains_key(path) {
+        let counts = path == COUNT
+            && !self.names.parameter_blocks.contains_key(path)
+            && (scope.limits.is_none() || !self.is_declared(path));
+        let statistic = Statistic::named(path);
+        if (counts || statistic.is_some()) && self.like_a_limit(path, span, scope) {
+            return Some(None);
+        }
+        if counts {
             return Some(scope.take(Taking::Count, Dimension::ONE, span));
         }
-        let statistic = Statistic::named(path)?;
+        let statistic = statistic?;
         Some(self.not_each(statistic, "group", span).and_then(|statistic| {
             scope.take(Taking::Statistic(statistic, self.ddof), dimension, span)
         }))
     }
 
-    /// What an estimate stands for. In a bound, its statistics are those of the values.
     fn estimate_named(
         &mut self,
         name: &str,
@@ -201,17 +207,9 @@ impl Checker<'_> {
         span: &Origin,
         scope: &mut Scope,
     ) -> Option<Expr> {
-        let own = scope.own_values;
         let limits = scope.limits.take();
-        let before = scope.values();
-        if let Some(group) = &mut scope.group {
-            group.values = group.values.or(own);
-        }
         let found = self.inside("estimate", name, span, |checker| checker.expr(written, scope));
         scope.limits = limits;
-        if let Some(group) = &mut scope.group {
-            group.values = before;
-        }
         found
     }
 
@@ -224,6 +222,9 @@ impl Checker<'_> {
     ) -> Option<Expr> {
         let Some(dimension) = scope.values() else { return self.no_values(span) };
         self.is_percentage(percent, span)?;
+        if self.like_a_limit(&format!("p{percent}"), span, scope) {
+            return None;
+        }
         let taking = Taking::Statistic(Statistic::Percentile(percent), self.ddof);
         scope.take(taking, dimension, span)
     }
@@ -289,11 +290,8 @@ impl Checker<'_> {
     /// the rows of a group are available. A section datum of the same name has priority.
     pub fn other_quantity(&self, of: &Phrase, scope: &Scope) -> Option<(usize, usize)> {
         let Node::Path(name) = &of.node else { return None };
-        if scope.group.is_none() && scope.value.is_none() || self.names.defines.contains_key(name) {
-            return None;
-        }
-        let mut data = self.names.columns.iter().chain(&self.names.vehicle);
-        if data.any(|datum| datum.name == *name) || self.names.parameter_blocks.contains_key(name) {
+        let of_rows = scope.group.is_some() || scope.value.is_some();
+        if !of_rows || self.is_declared(name) || self.names.parameter_blocks.contains_key(name) {
             return None;
         }
         let blocks = self.blocks.iter().enumerate();
@@ -356,7 +354,7 @@ impl Checker<'_> {
         let statistic = self.statistic(&reducer.with(name))?;
         let statistic = self.not_each(statistic, "quantity", span)?;
         let block = self.blocks.get(block)?.clone();
-        let dimension = self.dimension_of(&block)?;
+        let (dimension, _) = self.values_of(&block)?;
         let taking = Taking::Other { quantity, id: block.own_name(), statistic, ddof: self.ddof };
         if scope.group.is_some() {
             return scope.take(taking, dimension, span);

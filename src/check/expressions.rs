@@ -72,6 +72,9 @@ impl Checker<'_> {
             Node::Percentile(percent) if scope.group.is_some() => {
                 return self.group_percentile(*percent, &span, scope);
             }
+            Node::Percentile(_) if scope.limits.is_some() => {
+                return self.bare_statistic(&span.words, &span, scope);
+            }
             Node::Percentile(percent) => {
                 return self.own_reducer(Reducer::Percentile(*percent), span, scope);
             }
@@ -161,6 +164,9 @@ impl Checker<'_> {
                 let dimension = self.function_type(function, &arguments)?;
                 let ty = self.of_one_record(dimension, &arguments.iter().collect::<Vec<_>>())?;
                 (Kind::Call(function, arguments), ty)
+            }
+            Node::Reduced(limit, of) if Self::is_limit(limit, scope) => {
+                return self.limit_named(of, &span, scope);
             }
             // `share of std` with a parameter `share` is a product, `mean of Y` a value of a
             // signal.

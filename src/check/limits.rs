@@ -1,15 +1,14 @@
 //! Checks limits: statistic, bound, factors, conditions and scope.
 
-use super::evaluate::{number, words};
+use super::evaluate::words;
 use super::groups::Grouped;
 use super::plan::Scope as LimitScope;
 use super::prelude::*;
-use super::resolve::LIMITS_NOT_VALUES;
-use super::values::Values;
+use super::references::Limited;
+use super::scope::Bounded;
 use super::{overlap, printed};
 use crate::catalog::Best;
-use crate::metrics::rounded;
-use crate::result::{Direction, Reason};
+use crate::result::Direction;
 use crate::syntax::phrase::Limit as Written;
 
 /// What all limits of a quantity have in common.
@@ -20,8 +19,8 @@ struct Common<'a> {
     unit: Option<(&'a Unit, &'a Span)>,
     /// Best value and the text that decides it, where it is known.
     best: Option<&'a (Best, Span)>,
-    /// Names of the statistics that have a limit.
-    names: Vec<String>,
+    /// What its bounds can refer to.
+    bounded: Bounded,
 }
 
 impl Checker<'_> {
@@ -42,25 +41,25 @@ impl Checker<'_> {
         grouped: Grouped,
     ) -> Option<Vec<Limit>> {
         let fields: Vec<&Field> = block.fields_named("limit").collect();
-        // First pass, without messages: the names that other limits can refer to.
+        // First pass, without messages: what has a limit.
         let mut names = Vec::new();
         for field in &fields {
             if let Some(limit) = from_pest::limit(&field.value, &mut Problems::default()) {
                 names.push(self.with_statistic(limit.statistic, limit.estimate).0.node);
             }
         }
-        let common = Common { block, unit, best, names };
+        let bounded = Bounded { quantity: block.own_name(), estimates: names };
+        let common = Common { block, unit, best, bounded };
         self.grouped = grouped;
         let found: Vec<Option<Vec<Limit>>> =
             fields.iter().map(|field| self.limit(&field.value, &common)).collect();
         let ok = found.iter().all(Option::is_some);
-        let mut limits: Vec<Limit> = found.into_iter().flatten().flatten().collect();
-        say_unconfirmed(&mut limits, self.to_be_confirmed());
+        let limits: Vec<Limit> = found.into_iter().flatten().flatten().collect();
         let zone = self.zone.clone();
         overlap::find(&limits, zone.as_ref(), block, self.problems);
         if ok {
-            self.references(&limits);
-            self.amounts(&limits, common.unit.map(|(unit, _)| unit));
+            let (id, unit) = (block.own_name(), common.unit.map(|(unit, _)| unit.clone()));
+            self.limited.push(Limited { id, unit, limits: limits.clone() });
         }
         ok.then_some(limits)
     }
@@ -92,10 +91,6 @@ impl Checker<'_> {
         common: &Common<'_>,
     ) -> Option<Limit> {
         let text = &written.statistic.text;
-        let dimension =
-            estimate.unit.as_ref().or(common.unit.map(|(unit, _)| unit)).map(|unit| unit.dimension);
-        let others: Vec<String> =
-            common.names.iter().filter(|name| **name != written.statistic.node).cloned().collect();
         let scope = || Scope {
             // A limit of every single value may depend on its section; a limit of a statistic has
             // one bound.
@@ -103,16 +98,15 @@ impl Checker<'_> {
             ..Scope::zone(zone.as_deref())
         };
         let values = common.unit.map(|(unit, _)| unit.dimension);
-        let mut of_bound = scope();
-        of_bound.limits = Some((dimension.unwrap_or(Dimension::ONE), others.clone()));
-        of_bound.own_values = values;
-        let bound = if of_bound.section {
-            (of_bound.value, of_bound.pair) = (values, self.grouped.sides);
-            let expr = self.expr(&written.bound, &mut of_bound);
-            expr.map(|expr| OfGroup { expr, taken: of_bound.others })
-        } else {
-            self.of_group(&written.bound, None, &of_bound)
+        let mut names = match scope() {
+            each if each.section => Scope { value: values, pair: self.grouped.sides, ..each },
+            pooled => pooled.of_group(values),
         };
+        names.limits = Some(common.bounded.clone());
+        let bound = self.expr(&written.bound, &mut names).map(|expr| {
+            let taken = names.group.map_or(names.others, |group| group.taken);
+            OfGroup { expr, taken }
+        });
         let direction = match (written.at_least, written.at_most) {
             (true, _) => Direction::AtLeast,
             (_, true) => Direction::AtMost,
@@ -141,7 +135,7 @@ impl Checker<'_> {
             only_when.map(|when| self.condition(when, &mut Scope::zone(zone.as_deref()))),
         );
         let words = self.with_values(&normalised(&text.text[written.statistic.range.end..]));
-        let printed = printed::naming_limit(&words, &others);
+        let printed = printed::naming_limit(&words);
         Some(Limit {
             estimate: estimate.clone(),
             direction,
@@ -156,8 +150,8 @@ impl Checker<'_> {
         })
     }
 
-    /// The words of a limit with parameters replaced by their values: `2/3 of std` for `share of
-    /// std`.
+    /// The words of a limit with parameters replaced by their values: `2/3 of limit of std` for
+    /// `share of limit of std`.
     pub fn with_values(&self, words: &str) -> String {
         let is_name = |c: char| c.is_alphanumeric() || c == '_' || c == '.';
         let mut out = String::new();
@@ -307,164 +301,4 @@ impl Checker<'_> {
             factor.ty.in_words()
         ))
     }
-
-    /// A limit that refers to other limits and is a constant must be above zero.
-    fn amounts(&mut self, limits: &[Limit], unit: Option<&Unit>) {
-        for limit in limits.iter().filter(|limit| limit.direction != Direction::AtLeast) {
-            let names = referred(&limit.bound.expr);
-            let Some((name, place)) = names.first() else { continue };
-            let value = number(&limit.bound.expr, &Others { limits, of: limit, depth: 0 });
-            let Some(value) = value.ok().filter(|value| *value <= 0.0) else { continue };
-            let shown = unit.map_or_else(
-                || value.to_string(),
-                |unit| format!("{}{}", rounded(unit.from_si(value)), unit.suffix()),
-            );
-            let help = format!(
-                "in a limit, `{name}` stands for the limit of the {name}, not for its value"
-            );
-            self.tell(
-                problem!(
-                    "out-of-range",
-                    &limit.bound.expr,
-                    "a limit must be above zero; `{}` is {shown}",
-                    words(&limit.bound.expr)
-                )
-                .also(place, "a limit")
-                .help(help),
-            );
-        }
-    }
-
-    /// Every limit that a limit refers to must apply to the same sections. A limit must not depend
-    /// on itself.
-    fn references(&mut self, limits: &[Limit]) {
-        let refers = |limit: &Limit| referred(&limit.bound.expr);
-        let target = |limit: &Limit, name: &str| {
-            limits.iter().position(|other| {
-                other.estimate.name == name && same_sections(&other.scope, &limit.scope)
-            })
-        };
-        for limit in limits {
-            for (name, span) in refers(limit) {
-                if target(limit, &name).is_none() {
-                    let other = limits.iter().find(|other| other.estimate.name == name);
-                    self.tell(
-                        problem!(
-                            "no-such-limit",
-                            &span,
-                            "no limit of `{name}` applies to the same sections"
-                        )
-                        .also_if(
-                            other.map(|other| &other.span),
-                            "this one applies to other sections",
-                        ),
-                    );
-                }
-            }
-        }
-        let next: Vec<Vec<usize>> = limits
-            .iter()
-            .map(|limit| refers(limit).iter().filter_map(|(name, _)| target(limit, name)).collect())
-            .collect();
-        let mut told: Vec<&Span> = Vec::new();
-        for (index, limit) in limits.iter().enumerate() {
-            let Some(way) = way_back(index, &next) else { continue };
-            if told.contains(&&limit.span) {
-                continue;
-            }
-            let others: Vec<&Span> = way.iter().map(|&other| &limits[other].span).collect();
-            let mut problem = error("limit-loop", "this limit depends on itself", &limit.span);
-            for other in &others {
-                problem = problem.also(other, "through this one");
-            }
-            told.extend(others);
-            told.push(&limit.span);
-            self.tell(problem.help(LIMITS_NOT_VALUES));
-        }
-    }
-}
-
-/// Says so behind each limit with a number that is to be confirmed, and behind each that refers to
-/// such a limit.
-fn say_unconfirmed(limits: &mut [Limit], words: &str) {
-    // As often as there are limits, since one may refer to another by way of all others.
-    for _ in 0..limits.len() {
-        let sources: Vec<String> = limits
-            .iter()
-            .filter(|limit| limit.unconfirmed)
-            .map(|limit| limit.estimate.name.clone())
-            .collect();
-        for limit in limits.iter_mut() {
-            let names = referred(&limit.bound.expr);
-            limit.unconfirmed |= names.iter().any(|(name, _)| sources.contains(name));
-        }
-    }
-    for limit in limits.iter_mut().filter(|limit| limit.unconfirmed) {
-        limit.words += words;
-        limit.printed += words;
-    }
-}
-
-/// Limits that others refer to, where they are constants.
-struct Others<'a> {
-    limits: &'a [Limit],
-    of: &'a Limit,
-    depth: usize,
-}
-
-impl Values for Others<'_> {
-    fn limit_of(&self, statistic: &str) -> Result<f64, Reason> {
-        let unknown = || Reason::LimitUnknown { estimate: statistic.into() };
-        let mut found = self.limits.iter().filter(|limit| {
-            limit.estimate.name == statistic && same_sections(&limit.scope, &self.of.scope)
-        });
-        // With several limits, or a factor or condition, the value depends on the vehicle.
-        let (Some(limit), None) = (found.next(), found.next()) else { return Err(unknown()) };
-        if self.depth > self.limits.len() || !limit.factors.is_empty() || limit.only_when.is_some()
-        {
-            return Err(unknown());
-        }
-        number(&limit.bound.expr, &Others { limits: self.limits, of: limit, depth: self.depth + 1 })
-    }
-}
-
-/// Whether a limit of the first scope also applies to the rows of the second.
-fn same_sections(a: &LimitScope, b: &LimitScope) -> bool {
-    a.is_all() || a.same(b)
-}
-
-/// The limits on a path from one limit back to itself, if there is one.
-fn way_back(from: usize, next: &[Vec<usize>]) -> Option<Vec<usize>> {
-    let mut before: Vec<Option<usize>> = vec![None; next.len()];
-    let mut open = vec![from];
-    while let Some(at) = open.pop() {
-        for &to in &next[at] {
-            if to == from {
-                let mut way = Vec::new();
-                let mut step = at;
-                while step != from {
-                    way.push(step);
-                    step = before[step]?;
-                }
-                way.reverse();
-                return Some(way);
-            }
-            if before[to].is_none() {
-                before[to] = Some(at);
-                open.push(to);
-            }
-        }
-    }
-    None
-}
-
-/// The statistics whose limits an expression refers to, with their places.
-fn referred(expr: &Expr) -> Vec<(String, Span)> {
-    let mut names = Vec::new();
-    expr.visit(&mut |part| {
-        if let Kind::LimitOf(name) = &part.kind {
-            names.push((name.clone(), part.span.span.clone()));
-        }
-    });
-    names
 }

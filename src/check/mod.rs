@@ -42,6 +42,7 @@ mod prelude;
 mod printed;
 mod quantities;
 mod records;
+mod references;
 mod reports;
 mod resolve;
 mod rules;
@@ -124,6 +125,8 @@ struct Checker<'a> {
     minimum_of_groups: Vec<Field>,
     /// What the scopes that are looked at group.
     grouped: Grouped,
+    /// The limits of each quantity, which may refer to each other.
+    limited: Vec<references::Limited>,
 }
 
 /// What is checked only where it is written: nothing if it is not, `None` if it has an error.
@@ -182,6 +185,7 @@ pub fn check(
         minimum_pairs: 1,
         minimum_of_groups: Vec::new(),
         grouped: Grouped::default(),
+        limited: Vec::new(),
     };
     let before = checker.problems.0.len();
     let plan = checker.plan(document);
@@ -360,8 +364,10 @@ impl Checker<'_> {
         let checks = of("check").filter_map(|block| self.section_check(block)).collect();
         let filters = of("filter").filter_map(|block| self.named_filter(block)).collect();
         let domains = of("domain").filter_map(|block| self.domain(block)).collect();
-        let quantities: Vec<plan::Quantity> =
+        let mut quantities: Vec<plan::Quantity> =
             of("quantity").filter_map(|block| self.quantity(block)).collect();
+        self.references();
+        references::say_unconfirmed(&mut quantities, self.to_be_confirmed());
         if of("quantity").chain(of("plausibility")).next().is_none() {
             self.tell(error(
                 "no-quantity",

@@ -5,6 +5,7 @@ use indexmap::IndexMap;
 use std::collections::BTreeSet;
 
 use super::prelude::*;
+use super::references::LIMIT;
 use crate::catalog::{Reducer, Statistic};
 use crate::syntax::phrase::Alias;
 use crate::units::SYMBOLS;
@@ -147,7 +148,10 @@ impl Checker<'_> {
                 let says = format!("`{name}` is named twice");
                 return self.refuse(error("duplicate-name", says, argument));
             }
-            if from_pest::is_word_of_language(name) || Reducer::named(name).is_some() {
+            if from_pest::is_word_of_language(name)
+                || name == LIMIT
+                || Reducer::named(name).is_some()
+            {
                 let says = format!("`{name}` is a word of the language and no name of an argument");
                 return self.refuse(error("reserved-name", says, argument));
             }
@@ -177,10 +181,13 @@ impl Checker<'_> {
         let percentile = name
             .strip_prefix('p')
             .is_some_and(|rest| !rest.is_empty() && rest.chars().all(|c| c.is_ascii_digit()));
+        // `limit of std` would read as a product.
+        const OF_NUMBERS: [&str; 5] = ["parameter", "vehicle", "section", "define", "estimate"];
         const OF_GROUPS: [&str; 8] =
             ["n", "value", "share", "total", "upper", "lower", "prediction", "regression"];
         let taken = if from_pest::is_word_of_language(name)
             || kind == "estimate" && OF_GROUPS.contains(&name)
+            || name == LIMIT && OF_NUMBERS.contains(&kind)
         {
             Some("a word of the language")
         } else if percentile {

@@ -26,7 +26,7 @@ impl Checker<'_> {
 
     /// Dimension of its values, for other quantities. Errors are reported only where the quantity
     /// itself is checked.
-    pub fn dimension_of(&mut self, block: &Block) -> Option<Dimension> {
+    pub fn values_of(&mut self, block: &Block) -> Option<(Dimension, Grouped)> {
         let problems = self.problems.0.len();
         let (assumed, partial) = (std::mem::take(&mut self.assumed), self.partial);
         if let Some(Some(only)) = block.field("where").map(|field| self.section_condition(field)) {
@@ -37,7 +37,9 @@ impl Checker<'_> {
         let compared = self.compared_of(block, positions.as_deref(), chain.as_deref());
         (self.assumed, self.partial) = (assumed, partial);
         self.problems.0.truncate(problems);
-        compared.map(|compared| compared.dimension)
+        let (compared, first) = (compared?, positions.as_ref()?.first()?);
+        let places: Vec<String> = first.places.keys().cloned().collect();
+        Some((compared.dimension, Grouped::values(block, &places, compared.sides)))
     }
 
     /// Checks all fields even after an error, so that an author sees all errors in one run.

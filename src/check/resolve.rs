@@ -9,11 +9,6 @@ use crate::catalog::{DIFFERENCES, METRICS, MetricEntry, REDUCERS, Reducer, STATI
 use crate::source::Source;
 use crate::syntax::idiom;
 
-/// The meaning of a statistic's name in the bound of a limit, and how to limit an expression of
-/// values instead.
-pub const LIMITS_NOT_VALUES: &str = "in a limit, the name of a statistic stands for the limit of that statistic, not for its \
-    value; an expression of values stands before the limit: `limit (mean + 3 * std) 60 kN`";
-
 /// Where a section is on the axis.
 const EXTENT: [&str; 3] = ["start", "end", "length"];
 
@@ -217,21 +212,8 @@ impl Checker<'_> {
         if let Some(found) = self.group_path(path, span, scope) {
             return found;
         }
-        if let Some((dimension, names)) = &scope.limits
-            && names.iter().any(|name| name == path)
-        {
-            return number(Kind::LimitOf(path.to_string()), *dimension);
-        }
-        if let Some(statistic) = Statistic::named(path).filter(|_| scope.limits.is_some()) {
-            return self.refuse(
-                problem!(
-                    "no-such-limit",
-                    span,
-                    "there is no other limit of the {} that this could refer to",
-                    statistic.title(self.ddof)
-                )
-                .help(LIMITS_NOT_VALUES),
-            );
+        if scope.limits.is_some() && Statistic::named(path).is_some() {
+            return self.bare_statistic(path, span, scope);
         }
         if let Some(reducer) = Reducer::named(path) {
             return self.own_reducer(reducer, span.clone(), scope);
@@ -459,6 +441,12 @@ impl Checker<'_> {
                 || datum("vehicle.", &self.names.vehicle))
     }
 
+    /// Whether a definition or a datum has this name.
+    pub fn is_declared(&self, name: &str) -> bool {
+        let mut data = self.names.columns.iter().chain(&self.names.vehicle);
+        data.any(|datum| datum.name == name) || self.names.defines.contains_key(name)
+    }
+
     /// Whether the block of a name has an error that was already reported.
     pub fn is_failed(&self, path: &str) -> bool {
         let name = path.split_once('.').map_or(path, |(_, name)| name);
@@ -490,9 +478,6 @@ impl Checker<'_> {
             self.names.parameter_blocks.keys().chain(self.names.defines.keys()).cloned().collect();
         if scope.pair.is_some() {
             known.extend(Side::ALL.map(|side| side.in_words().to_string()));
-        }
-        if let Some((_, names)) = &scope.limits {
-            known.extend(names.iter().cloned());
         }
         if scope.values().is_some() {
             known.extend(STATISTICS.iter().map(|entry| entry.name.to_string()));

@@ -19,8 +19,8 @@ pub struct Scope {
     pub reduce: Option<Reduce>,
     /// Dimension of `simulated` and `measured`, where they can be used.
     pub pair: Option<Dimension>,
-    /// Dimension of the limits of other statistics, and the names of these.
-    pub limits: Option<(Dimension, Vec<String>)>,
+    /// In the bound of a limit: the quantity, whose limits and those of others can be used.
+    pub limits: Option<Bounded>,
     /// The zone of the sections, where it is a single one.
     pub zone: Option<String>,
     /// The rows of a group.
@@ -29,8 +29,6 @@ pub struct Scope {
     pub value: Option<Dimension>,
     /// Statistics of other quantities that can be used beside `value`.
     pub others: Vec<Taking>,
-    /// Dimension of the values that an estimate by its name is of, in a bound.
-    pub own_values: Option<Dimension>,
     /// Arguments of the functions that are being looked at, by name.
     pub arguments: Vec<(String, Expr)>,
     /// The position at which named signals are taken.
@@ -42,6 +40,14 @@ pub struct Scope {
     pub siblings: bool,
     /// Words that stand for themselves, where the value is one of them.
     pub words: Vec<String>,
+}
+
+/// The quantity whose values a bound limits.
+#[derive(Clone, Debug)]
+pub struct Bounded {
+    pub quantity: String,
+    /// The names of the estimates that it has limits of.
+    pub estimates: Vec<String>,
 }
 
 /// From what values of signals are taken.
@@ -96,13 +102,7 @@ impl Scope {
     /// `None` where only data of the sections are available.
     pub fn of_group(&self, values: Option<Dimension>) -> Self {
         let group = Some(Group { values, taken: Vec::new() });
-        Self {
-            zone: self.zone.clone(),
-            limits: self.limits.clone(),
-            own_values: self.own_values,
-            group,
-            ..Self::vehicle()
-        }
+        Self { zone: self.zone.clone(), group, ..Self::vehicle() }
     }
 
     /// As [`Self::section`], with values of signals; `own` is the dimension of the own signal.

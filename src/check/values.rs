@@ -3,7 +3,7 @@
 use crate::result::Reason;
 use std::cell::RefCell;
 
-use super::plan::{Kind, Scalar, Side};
+use super::plan::{Kind, LimitName, Scalar, Side};
 
 /// Values of the names in an expression. Each method may return an error that states why the value
 /// is missing; by default it is missing.
@@ -25,8 +25,8 @@ pub trait Values {
     fn sides(&self) -> Result<(f64, f64), Reason> {
         Err(Reason::NoPairHere)
     }
-    fn limit_of(&self, statistic: &str) -> Result<f64, Reason> {
-        Err(Reason::LimitUnknown { estimate: statistic.into() })
+    fn limit_of(&self, name: &LimitName) -> Result<f64, Reason> {
+        Err(Reason::LimitUnknown { estimate: name.to_string() })
     }
     /// By what share of the right side `<=` and `>=` may be missed: the rounding of numbers that
     /// were converted to SI and subtracted.
@@ -80,8 +80,8 @@ impl<V: Values> Values for Watched<'_, V> {
     fn sides(&self) -> Result<(f64, f64), Reason> {
         self.values.sides()
     }
-    fn limit_of(&self, statistic: &str) -> Result<f64, Reason> {
-        self.values.limit_of(statistic)
+    fn limit_of(&self, name: &LimitName) -> Result<f64, Reason> {
+        self.values.limit_of(name)
     }
     fn rounding(&self) -> f64 {
         self.values.rounding()
@@ -106,7 +106,7 @@ pub fn leaf(kind: &Kind, values: &dyn Values) -> Result<Scalar, Reason> {
         Kind::Side(side) => values.sides().map(|(simulated, measured)| {
             Scalar::Number(if *side == Side::Simulated { simulated } else { measured })
         }),
-        Kind::LimitOf(statistic) => values.limit_of(statistic).map(Scalar::Number),
+        Kind::LimitOf(name) => values.limit_of(name).map(Scalar::Number),
         _ => Err(Reason::Internal),
     }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::verdicts::decided;
 use crate::certify::Compiled;
 use crate::check::diff;
-use crate::check::plan::{Expr, Kind, Plan, Quantity, Scalar, Type};
+use crate::check::plan::{Expr, Kind, LimitName, Plan, Quantity, Scalar, Type};
 use crate::result::impact::Margin;
 use crate::result::{Outcome, QuantityResult};
 use crate::run::{Evaluated, Given, Judged, overall};
@@ -112,10 +112,16 @@ impl Found<'_> {
                 Arc::make_mut(own).factors.push((by, always));
             }
         }
-        let (result, fails) = self.evaluated.judge_quantity(&plan, limit.quantity);
         let mut quantities: Vec<QuantityResult> = self.judged.quantities.clone();
         let mut all = self.judged.fails.clone();
-        (quantities[limit.quantity], all[limit.quantity]) = (result, fails);
+        let of_another =
+            |part: &Expr| matches!(&part.kind, Kind::LimitOf(LimitName { of: Some(_), .. }));
+        for (at, quantity) in plan.quantities.iter().enumerate() {
+            let refers = quantity.limits.iter().any(|limit| limit.bound.expr.any(&of_another));
+            if at == limit.quantity || refers {
+                (quantities[at], all[at]) = self.evaluated.judge_quantity(&plan, at);
+            }
+        }
         let barred = self.judged.barred.clone();
         overall(&plan, &Given { barred, quantities: &quantities, fails: all })
     }

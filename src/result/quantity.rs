@@ -238,7 +238,7 @@ pub struct StatisticResult {
     pub holds: Option<bool>,
     /// Factors of the limit that depend on vehicle data.
     pub factors: Vec<LimitFactor>,
-    /// The limit in the words of the protocol: `2/3 of std`.
+    /// The limit in the words of the protocol: `2/3 of limit of std`.
     pub limit_text: String,
     /// The same as printed: `2/3 of the limit of std`.
     pub limit_printed: String,

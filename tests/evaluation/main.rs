@@ -13,6 +13,7 @@ mod comfort;
 mod computed;
 mod domain;
 mod estimates;
+mod limits;
 mod metrics;
 mod parts;
 mod peer;

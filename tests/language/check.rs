@@ -343,8 +343,8 @@ fn shipped_protocols_are_without_remarks_and_canonical() {
 /// quantities.
 #[test]
 fn unused_parts_are_told() {
-    let quantity = "quantity q\n  of          ay\n  value       rms\n  difference  signed\n  limit       std limit\n";
-    let parts = "parameter limit\n  default  base * 2\n\ndefine base\n  is  1 m/s^2\n\ndefine other\n  is  third\n\nparameter third\n  default  3\n\nestimate fourth\n  is  mean + std\n\n";
+    let quantity = "quantity q\n  of          ay\n  value       rms\n  difference  signed\n  limit       std allowed\n";
+    let parts = "parameter allowed\n  default  base * 2\n\ndefine base\n  is  1 m/s^2\n\ndefine other\n  is  third\n\nparameter third\n  default  3\n\nestimate fourth\n  is  mean + std\n\n";
     let told = |text: &str| {
         let (_, plan, problems) = checked(&Source::new("p.fp", text));
         assert!(plan.is_some(), "{}", problems.render(false));
@@ -486,7 +486,11 @@ fn a_variant_overrides_field_by_field() {
     );
     assert_eq!(
         deviations("remove\n  limit  az_max mean\n"),
-        [("quantity az_max, limit mean".into(), some("mean mean_limit_share of std"), None)]
+        [(
+            "quantity az_max, limit mean".into(),
+            some("mean mean_limit_share of limit of std"),
+            None
+        )]
     );
     let removed = deviations("remove\n  quantity  az_max\n");
     assert_eq!(
@@ -703,7 +707,7 @@ fn a_number_to_be_confirmed_says_so() {
         define higher \"Higher\"\n  is           6 kN\n  unconfirmed  \"From memory.\"\n\n\
         estimate reached \"Reached\"\n  is  mean + 2 * std\n\n\
         remove\n  limit  Y_max\n  limit  Q_max mean\n\n\
-        quantity Y_max\n  limit  std highest\n  limit  mean 2/3 of std\n  limit  reached 12 kN\n  limit  peak 2 * higher\n\n\
+        quantity Y_max\n  limit  std highest\n  limit  mean 2/3 of limit of std\n  limit  reached 12 kN\n  limit  peak 2 * higher\n\n\
         quantity Q_max\n  limit        mean 3 kN\n  unconfirmed  \"By eye.\"\n";
     const MARK: &str = ", to be confirmed against the standard";
     let words = |text: &str, overrides: &Overrides| {

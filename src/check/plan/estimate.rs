@@ -16,7 +16,7 @@ pub struct Limit {
     pub factors: Vec<(Expr, Expr)>,
     pub only_when: Option<Expr>,
     pub scope: Scope,
-    /// As written: `2/3 of std`.
+    /// As written: `2/3 of limit of std`.
     pub words: String,
     /// As printed: `2/3 of the limit of std`.
     pub printed: String,

@@ -85,8 +85,7 @@ pub enum Kind {
     /// The value of this side. Over samples, the own processed signal of this side, at the points
     /// where both sides have one; only in values taken from both sides.
     Side(Side),
-    /// The limit of another statistic of the same quantity and scope.
-    LimitOf(String),
+    LimitOf(LimitName),
     /// A column of the records, with the channel it belongs to.
     Channel {
         column: String,
@@ -106,6 +105,24 @@ pub enum Kind {
     Level(Reducer, Box<Expr>),
     /// The value of the first condition that holds, else the last value.
     Cases(Vec<(Expr, Expr)>, Option<Box<Expr>>),
+}
+
+/// A limit that another one refers to, of the same rows: `limit of std`, `limit of std of Q_max`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LimitName {
+    /// Name of the estimate that it limits.
+    pub estimate: String,
+    /// Another quantity: its index in [`Plan::quantities`](super::Plan::quantities) and its name.
+    pub of: Option<(usize, String)>,
+}
+
+impl fmt::Display for LimitName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.of {
+            None => write!(f, "{}", self.estimate),
+            Some((_, quantity)) => write!(f, "{} of {quantity}", self.estimate),
+        }
+    }
 }
 
 /// An operation on a signal along its axis.

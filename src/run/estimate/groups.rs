@@ -246,6 +246,21 @@ impl<'a> RowGroup<'a> {
             .collect()
     }
 
+    /// The rows of another quantity that a limit with this scope takes together where this group
+    /// is: all of them, or those with the same zones and keys.
+    pub fn rows_of<'m>(&self, other: &Group<'m>, scope: &Scope) -> Result<Vec<Member<'m>>, Reason> {
+        let mut rows = Vec::new();
+        for member in other.members {
+            let alike = |(key, _, of): &(&Key, String, String)| other.of_key(key, member).1 == *of;
+            if scope.is_all()
+                || self.has_section(member.unit, other.facts)? && self.keys.iter().all(alike)
+            {
+                rows.push(*member);
+            }
+        }
+        Ok(rows)
+    }
+
     /// Whether a limit of this scope also applies to the group, and how specific it is.
     pub fn covered_by(&self, scope: &Scope) -> Option<Closeness> {
         let condition = |scope: &Scope| scope.condition.as_ref().map(|(_, words)| words.clone());

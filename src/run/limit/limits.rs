@@ -4,7 +4,7 @@ use super::against::{against, spans};
 use super::factors::factors;
 use crate::catalog::Statistic;
 use crate::check::evaluate::{flag, number};
-use crate::check::plan::{Estimate, EstimateKind, Limit, Quantity, Report};
+use crate::check::plan::{Estimate, EstimateKind, Limit, LimitName, Quantity, Report};
 use crate::metrics::statistics::{Divisor, mean, standard_deviation};
 use crate::result::{
     Direction, LimitNotMet, Outside, Reason, RegressionFigure, RulePlace, Sample, Scope,
@@ -390,17 +390,20 @@ struct OfGroup<'a> {
 }
 
 impl OfGroup<'_> {
-    /// A limit with its factors, SI. A reference to another statistic means the limit of that
-    /// statistic, with its factors.
+    /// A limit with its factors, SI. So are those that it refers to.
     fn bound(&self, limit: &Limit) -> Result<f64, Reason> {
-        if self.depth > self.quantity.limits.len() {
+        let limits = self.group.plan.quantities.iter().map(|quantity| quantity.limits.len());
+        if self.depth > limits.sum() {
             return Err(Reason::LimitDependsOnItself);
         }
         let mut taken = self.group.taken(&limit.bound);
         let mut sides = None;
         // The limit of a single value may depend on it.
         if matches!(limit.estimate.kind, EstimateKind::Each) {
-            let row = self.group.members.first().map(|member| member.row);
+            let row = match self.group.members {
+                [member] => Some(member.row),
+                _ => None,
+            };
             taken.insert(0, row.map(|row| row.value).ok_or(Reason::NoValue));
             sides = row.and_then(|row| row.simulated.zip(row.measured));
         }
@@ -420,9 +423,11 @@ impl OfGroup<'_> {
 
 impl Limits for OfGroup<'_> {
     /// One for just this group has priority over one for all.
-    fn limit_of(&self, name: &str) -> Result<f64, Reason> {
+    fn limit_of(&self, name: &LimitName) -> Result<f64, Reason> {
+        let Group { plan, table, .. } = self.group;
+        let quantity = name.of.as_ref().map_or(self.quantity, |(at, _)| &plan.quantities[*at]);
         let mut found: Option<(Closeness, &Limit)> = None;
-        for limit in self.quantity.limits.iter().filter(|limit| limit.estimate.name == name) {
+        for limit in quantity.limits.iter().filter(|limit| limit.estimate.name == name.estimate) {
             let Some(closeness) = self.part.covered_by(&limit.scope) else { continue };
             if applies(limit, self.known.vehicle)?
                 && found.is_none_or(|(before, _)| closeness > before)
@@ -430,8 +435,19 @@ impl Limits for OfGroup<'_> {
                 found = Some((closeness, limit));
             }
         }
-        let (_, limit) = found.ok_or_else(|| Reason::NoLimitOf { estimate: name.into() })?;
-        OfGroup { depth: self.depth + 1, ..*self }.bound(limit)
+        let (_, limit) = found.ok_or_else(|| Reason::NoLimitOf { estimate: name.to_string() })?;
+        let deeper = OfGroup { depth: self.depth + 1, ..*self };
+        let Some((at, id)) = &name.of else { return deeper.bound(limit) };
+        // A bound may be taken from the values that it limits: those of the other quantity.
+        let group = Group { quantity: Some(quantity), members: &[], ..self.group };
+        let rows = match limit.bound.taken.is_empty() {
+            true => Ok(Vec::new()),
+            false => table[*at]
+                .clone()
+                .and_then(|rows| self.part.rows_of(&group.with(rows), &limit.scope)),
+        };
+        let rows = rows.map_err(|reason| reason.about(Subject::Quantity, id))?;
+        OfGroup { quantity, group: group.with(&rows), ..deeper }.bound(limit)
     }
 }
 

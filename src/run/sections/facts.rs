@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::unit::Unit;
 use crate::check::evaluate::{evaluate, flag, words};
-use crate::check::plan::{Datum, DatumKind, Expr, Plan, Scalar};
+use crate::check::plan::{Datum, DatumKind, Expr, LimitName, Plan, Scalar};
 use crate::check::values::Values;
 use crate::data::Campaigns;
 use crate::data::campaign::VehicleState;
@@ -303,7 +303,7 @@ pub struct Known<'a> {
     pub extent: Option<(f64, f64)>,
     pub inputs: &'a [Result<f64, Reason>],
     pub sides: Option<(f64, f64)>,
-    /// Of the statistics that a limit may refer to.
+    /// That a limit may refer to.
     pub limits: Option<&'a (dyn Limits + Sync)>,
     /// See [`Values::rounding`].
     pub rounding: f64,
@@ -320,11 +320,11 @@ pub fn compute(plan: &Plan, columns: &mut [Result<Scalar, Reason>], known: &Know
 
 /// Limits that other limits refer to.
 pub trait Limits: std::fmt::Debug {
-    /// The limit of a statistic, SI.
+    /// The limit of this name, SI.
     ///
     /// # Errors
-    /// It has none.
-    fn limit_of(&self, statistic: &str) -> Result<f64, Reason>;
+    /// There is none, or it has no value.
+    fn limit_of(&self, name: &LimitName) -> Result<f64, Reason>;
 }
 
 impl<'a> Known<'a> {
@@ -365,9 +365,9 @@ impl Values for Known<'_> {
         self.sides.ok_or(Reason::NoPairHere)
     }
 
-    fn limit_of(&self, statistic: &str) -> Result<f64, Reason> {
-        let unknown = || Reason::LimitUnknown { estimate: statistic.into() };
-        self.limits.ok_or_else(unknown)?.limit_of(statistic)
+    fn limit_of(&self, name: &LimitName) -> Result<f64, Reason> {
+        let unknown = || Reason::LimitUnknown { estimate: name.to_string() };
+        self.limits.ok_or_else(unknown)?.limit_of(name)
     }
 
     fn rounding(&self) -> f64 {

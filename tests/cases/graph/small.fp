@@ -50,7 +50,7 @@ quantity maximum "Maximum"
   value       larger of |p0.15|, |p99.85|
   difference  magnitudes
   limit       std 3 kN
-  limit       mean 2/3 of std
+  limit       mean 2/3 of limit of std
 
 quantity outer "Outer wheel"
   of          Y at side outer

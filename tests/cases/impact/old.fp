@@ -32,7 +32,7 @@ quantity qa "A"
   value       mean
   difference  signed
   limit       std 1 kN
-  limit       mean 2/3 of std
+  limit       mean 2/3 of limit of std
 
 quantity qb "B"
   of          b

@@ -62,7 +62,7 @@ quantity x
   of          Y at wheelset 1 and side R
   value       larger of p1, p99
   difference  signed
-  limit       std 2/share of mean
+  limit       std 2/share of limit of mean
   limit       mean Q0
 
 signal both "Places joined by and"

@@ -89,7 +89,7 @@ quantity y
   of          Y at wheelset 1
   value       median
   difference  signed
-  limit       std 2 of mean
-  limit       mean 3 of rms
-  limit       rms 4 of std
+  limit       std 2 of limit of mean
+  limit       mean 3 of limit of rms
+  limit       rms 4 of limit of std
   limit       p95 3 kN

@@ -56,11 +56,11 @@ quantity x
   of          Y at wheelset 1
   value       median
   difference  signed
-  limit       mean 2/3 of std for zone 1
+  limit       mean 2/3 of limit of std for zone 1
   limit       std 3 kN for zone 2
 
 quantity y
   of          Y at wheelset 1
   value       median
   difference  signed
-  limit       p95 2 of rms
+  limit       p95 2 of limit of rms

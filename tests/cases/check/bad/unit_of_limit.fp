@@ -58,4 +58,4 @@ quantity Y_max "Guiding force, maximum"
   value       p99.85
   difference  magnitudes
   limit       std 2.5 m/s^2
-  limit       mean 2/3 of std
+  limit       mean 2/3 of limit of std

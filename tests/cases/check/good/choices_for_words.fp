@@ -50,7 +50,7 @@ quantity in_curves "Of curves to one side"
   where       direction is which
   minimum pairs  1
   limit       statistic 50 kN
-  limit       median 2/3 of std
+  limit       median 2/3 of limit of std
 
 quantity of_simulation "The measured value is not looked at"
   of          Y at wheelset 1

@@ -73,7 +73,7 @@ quantity instability "Instability, rms of the sum of guiding forces"
   difference  signed
   limit       std 2 kN for zone 1
   limit       std 3 kN for zone 2
-  limit       mean 2/3 of std for each zone
+  limit       mean 2/3 of limit of std for each zone
 
 quantity frame "Bogie frame acceleration"
   of          yb

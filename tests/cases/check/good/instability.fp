@@ -65,4 +65,4 @@ quantity SigmaY_rms "Sum of guiding forces, sliding rms"
   value       maximum
   difference  magnitudes
   limit       std (0.1 * (10 kN + 2/3 * Q0))
-  limit       mean 2/3 of std
+  limit       mean 2/3 of limit of std

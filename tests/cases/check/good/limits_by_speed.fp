@@ -65,4 +65,4 @@ quantity by_class "Statistics of classes of sections"
   difference  signed
   limit       std 3 kN for sections where speed <= 80 km/h
   limit       std 4 kN for sections where speed > 80 km/h
-  limit       mean 2/3 of std for sections where speed <= 80 km/h
+  limit       mean 2/3 of limit of std for sections where speed <= 80 km/h

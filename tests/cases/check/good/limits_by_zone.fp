@@ -54,7 +54,7 @@ quantity table "One line of limits for all zones"
   value       median
   difference  signed
   limit       std 5 kN when zone is 1, otherwise 7 kN for each zone
-  limit       mean share of std for each zone
+  limit       mean share of limit of std for each zone
   limit       p95 10 kN for zone 2
 
 quantity by_condition "Limits that exclude each other by the vehicle"

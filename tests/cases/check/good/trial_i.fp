@@ -17,4 +17,4 @@ quantity Y_max "Guiding force, maximum"
   value       p99.85
   difference  magnitudes
   limit       std 10 kN for each country
-  limit       mean 2/3 of std for each country
+  limit       mean 2/3 of limit of std for each country

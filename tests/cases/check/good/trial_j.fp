@@ -18,7 +18,7 @@ quantity Q_max "Vertical wheel force, maximum"
   value       p99.85
   difference  magnitudes
   limit       std 6 kN * (1 + 0.01 * (mean of Q0_state)/kN) for each state
-  limit       mean 2/3 of std for each state
+  limit       mean 2/3 of limit of std for each state
 
 quantity Q_max_n "Vertical wheel force, maximum, by the limit of its state"
   of          Q at wheelsets 1, 3

@@ -65,7 +65,8 @@ quantity Y_max "Guiding force, maximum"
   value            larger of |p0.15|, |p99.85|
   difference       |simulated| - |measured|
   limit            std 9 kN  # as published
-  limit            mean 2/3 of std when vehicle.category is passenger and vehicle.running_gear is bogies,
+  limit            mean 2/3 of limit of std when vehicle.category is passenger
+                   and vehicle.running_gear is bogies,
                    otherwise 4 kN
   minimum signals  2
 
