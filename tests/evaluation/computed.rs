@@ -324,3 +324,60 @@ fn wanted_operation_is_computed_too() {
     let part = "the protocol computes `class`, and the table of wanted operation states it";
     assert!(says.contains(part) && says.contains("wanted.csv:1:"), "{says}");
 }
+
+/// Of a vehicle in several states, a section has the data of its own state.
+#[test]
+fn the_vehicle_is_that_of_the_section() {
+    let folder = campaign();
+    let file = |name: &str| folder.path().join(name);
+    let states = "vehicle: {tare: vehicle.yaml, laden: laden.yaml}";
+    replace(&file("campaign.yaml"), "vehicle: vehicle.yaml", states);
+    fs::copy(file("vehicle.yaml"), file("laden.yaml")).expect("copied");
+    replace(&file("laden.yaml"), "static_wheel_load: 50", "static_wheel_load: 60 kN");
+    let state = |at: usize| if at.is_multiple_of(3) { "laden" } else { "tare" };
+    lines(&file("sections.csv"), |lines| {
+        lines[0] += ",state";
+        for (at, line) in lines[1..].iter_mut().enumerate() {
+            *line = format!("{line},{}", state(at));
+        }
+    });
+    let rules = [
+        "vehicle load \"Load\"\n  in   kN\n  key  static_wheel_load",
+        "section heavy \"Heavy\"\n  one of  true, false\n  is      load >= 60 kN",
+    ];
+    let found = run(folder.path(), &rules);
+    let expected: Vec<String> = (0..12).map(|at| (state(at) == "laden").to_string()).collect();
+    assert_eq!(words(&found, "Heavy"), expected);
+}
+
+/// A variant computes what its parent reads from the table, and the reverse.
+#[test]
+fn a_variant_takes_the_datum_from_elsewhere() {
+    let folder = campaign();
+    let column = "  column  \"conicity class\"\n";
+    protocol(folder.path(), &[CLASS, column, "  default  low\n"]);
+    let variant = |name: &str, parent: &str, field: &str| {
+        let path = folder.path().join(name);
+        let text = format!(
+            "protocol variant \"A variant\"\n  extends  \"{parent}\"\n\nsection class\n{field}"
+        );
+        fs::write(&path, text).expect("written");
+        path.display().to_string()
+    };
+    let class = |protocol: &str| {
+        let found = certified(folder.path(), protocol, &[])
+            .unwrap_or_else(|problems| panic!("{}", problems.render(false)));
+        words(&found, "Class of conicity")
+    };
+    let computes = variant("computes.fp", "classes.fp", IS);
+    let reads = variant("reads.fp", "computes.fp", column);
+    let expected = CONICITY.map(|(_, class)| class);
+    assert_eq!(class(&computes), expected);
+    lines(&folder.path().join("sections.csv"), |lines| {
+        lines[0] += ",conicity class";
+        lines[1..].iter_mut().for_each(|line| *line += ",medium");
+    });
+    assert_eq!(class(&reads), ["medium"; 12]);
+    // The column has another name than the datum that is computed.
+    assert_eq!(class(&computes), expected);
+}
