@@ -35,6 +35,7 @@ fn pool(counts: &[usize]) -> Pool {
     let limit = |name: &str, bound: f64| PooledLimit {
         estimate: Pooled::Statistic(named(name), 1),
         direction: fishplate::result::Direction::Magnitude,
+        edge: false,
         title: name.into(),
         scope: fishplate::result::Scope::default(),
         positions: Vec::new(),

@@ -195,6 +195,10 @@ fn relaxed(old: Option<&Field>, new: Option<&Field>) -> Option<bool> {
             let (old, new) =
                 (from_pest::limit(&old.value, quiet)?, from_pest::limit(&new.value, quiet)?);
             let order = size(&old.bound, &new.bound)?;
+            if let (Some(old), Some(new)) = (&old.lower, &new.lower) {
+                let wider = size(old, new)? == Ordering::Less || order == Ordering::Greater;
+                return Some(wider);
+            }
             Some(order == if new.at_least { Ordering::Less } else { Ordering::Greater })
         }
         "otherwise" | "faulty" => {

@@ -1,11 +1,12 @@
 //! Checks limits: statistic, bound, factors, conditions and scope.
 
-use super::evaluate::words;
+use super::evaluate::{number, words};
 use super::groups::Grouped;
 use super::plan::Scope as LimitScope;
 use super::prelude::*;
 use super::references::Limited;
 use super::scope::Bounded;
+use super::values::Nothing;
 use super::{overlap, printed};
 use crate::catalog::Best;
 use crate::result::Direction;
@@ -77,7 +78,26 @@ impl Checker<'_> {
             self.unconfirmed = unconfirmed;
             let estimate =
                 self.estimate(&written.statistic, &written.estimate, dimension, zone.as_deref());
-            limits.push(self.limit_of(&written, &estimate?, scope?, zone, common)?);
+            let (estimate, scope) = (estimate?, scope?);
+            let Some(lower) = written.lower.clone() else {
+                limits.push(self.limit_of(&written, &estimate, scope, zone, common)?);
+                continue;
+            };
+            let lower = Written { bound: lower, at_least: true, ..written.clone() };
+            let upper = Written { at_most: true, ..written.clone() };
+            for edge in [lower, upper] {
+                let (scope, zone) = (scope.clone(), zone.clone());
+                limits.push(self.limit_of(&edge, &estimate, scope, zone, common)?);
+            }
+            let edges = limits.last_chunk().map(|[lower, upper]| [&lower.bound, &upper.bound]);
+            let constant = edges.map(|edges| edges.map(|edge| number(&edge.expr, &Nothing)));
+            if let (Some([Ok(low), Ok(high)]), Some([lower, upper])) = (constant, edges)
+                && low >= high
+            {
+                let says = "the lower edge is not below the upper one";
+                let problem = error("empty-range", says, &lower.expr);
+                return self.refuse(problem.also(&upper.expr, "the upper edge"));
+            }
         }
         Some(limits)
     }
@@ -121,7 +141,8 @@ impl Checker<'_> {
             if signed && direction == Direction::Magnitude {
                 self.signed_estimate(estimate, &written.statistic);
             }
-            let expr = self.suitable_bound(bound.expr, written.at_least, of, common)?;
+            let any_sign = written.at_least || written.lower.is_some();
+            let expr = self.suitable_bound(bound.expr, any_sign, of, common)?;
             self.share_above_one(estimate, &expr)?;
             Some(OfGroup { expr: self.on_its_side(expr, written, estimate, common)?, ..bound })
         });
@@ -139,6 +160,7 @@ impl Checker<'_> {
         Some(Limit {
             estimate: estimate.clone(),
             direction,
+            edge: written.lower.is_some(),
             bound: bound?,
             factors: factors?,
             only_when: only_when?,
@@ -185,7 +207,7 @@ impl Checker<'_> {
     fn suitable_bound(
         &mut self,
         bound: Expr,
-        at_least: bool,
+        any_sign: bool,
         of: Option<(&Unit, &Span)>,
         common: &Common<'_>,
     ) -> Option<Expr> {
@@ -217,7 +239,7 @@ impl Checker<'_> {
             );
         }
         match bound.kind {
-            Kind::Constant(Scalar::Number(value)) if value <= 0.0 && !at_least => {
+            Kind::Constant(Scalar::Number(value)) if value <= 0.0 && !any_sign => {
                 self.refuse(problem!(
                     "out-of-range",
                     &bound,
@@ -248,10 +270,13 @@ impl Checker<'_> {
         };
         let constant =
             if let Kind::Constant(Scalar::Number(value)) = bound.kind { Some(value) } else { None };
-        let keeps_best = |value: f64| {
-            if written.at_least { best.value() >= value } else { best.value().abs() <= value }
+        let keeps_best = |value: f64| match (written.at_least, written.lower.is_some()) {
+            (true, _) => best.value() >= value,
+            (false, true) => best.value() <= value,
+            (false, false) => best.value().abs() <= value,
         };
         let wrong = match (best, written.at_least) {
+            _ if written.lower.is_some() => constant.is_some_and(|value| !keeps_best(value)),
             (Best::Least(_), true) | (Best::Greatest(_), false) => true,
             _ => constant.is_some_and(|value| !keeps_best(value)),
         };
@@ -272,6 +297,7 @@ impl Checker<'_> {
         );
         let problem = problem.also_if(from, format!("best value {is}"));
         self.refuse(problem.help(match (best, written.at_least) {
+            _ if written.lower.is_some() => "the best value must lie between the edges".into(),
             (Best::Greatest(best), true) => {
                 format!("no value is above {best}, so the limit must not be either")
             }

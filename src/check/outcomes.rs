@@ -120,6 +120,7 @@ impl Checker<'_> {
         let limit = Limit {
             estimate,
             direction: Direction::AtMost,
+            edge: false,
             bound,
             factors: Vec::new(),
             only_when: None,

@@ -54,7 +54,7 @@ impl Checker<'_> {
         (self.grouped, self.unconfirmed) = (before, unconfirmed);
         let Some(found) = found else {
             let (name, of) = (estimate.words(), block.name_text());
-            let says = format!("`{of}` has no limit of `{name}`");
+            let says = format!("`{of}` has no limit of `{name}` that is one number");
             let limits = block.fields_named("limit");
             let limits =
                 limits.filter_map(|field| from_pest::limit(&field.value, &mut Problems::default()));
@@ -82,7 +82,8 @@ impl Checker<'_> {
             let limit = from_pest::limit(&field.value, self.problems)?;
             let (name, estimate) = self.with_statistic(limit.statistic, limit.estimate);
             let same = estimate == wanted || bare(&name.node) == bare(&wanted.words());
-            same.then(|| self.estimate(&name, &estimate, Some(values), zone))
+            (same && limit.lower.is_none())
+                .then(|| self.estimate(&name, &estimate, Some(values), zone))
         })
     }
 
@@ -161,7 +162,8 @@ impl Checker<'_> {
     fn amount(&mut self, all: &All<'_>, at: usize) {
         let (of, limit) = all.0[at];
         let names = referred(&limit.bound.expr);
-        let (Some((name, place)), true) = (names.first(), limit.direction != Direction::AtLeast)
+        let (Some((name, place)), true) =
+            (names.first(), limit.direction != Direction::AtLeast && !limit.edge)
         else {
             return;
         };

@@ -294,7 +294,7 @@ impl Checker<'_> {
         };
         let (there, what) = match (of_limits, of) {
             (true, _) => {
-                (about.iter().map(|&at| quantities[at].limits.len()).sum::<usize>(), "limits")
+                (about.iter().map(|&at| quantities[at].limits_written()).sum::<usize>(), "limits")
             }
             (false, Some(_)) => (about.len(), "quantities"),
             (false, None) => (self.blocks_of("quantity").count(), "quantities"),

@@ -30,7 +30,7 @@ pub fn check(names: &[String], console: &Console) -> Done {
                 "{name}: {}, {}, {}: no errors",
                 counted(plan.quantities.len(), "quantity", "quantities"),
                 counted(
-                    plan.quantities.iter().map(|quantity| quantity.limits.len()).sum(),
+                    plan.quantities.iter().map(|quantity| quantity.limits_written()).sum(),
                     "limit",
                     "limits"
                 ),

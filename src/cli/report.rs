@@ -182,7 +182,10 @@ fn shown(value: Option<f64>) -> String {
 }
 
 fn bound(statistic: &StatisticResult) -> String {
-    format!("{}{}", statistic.direction.sign(), shown(statistic.limit))
+    match statistic.between() {
+        Some((low, high)) => format!("{} to {}", shown(Some(low)), shown(Some(high))),
+        None => format!("{}{}", statistic.direction.sign(), shown(statistic.limit)),
+    }
 }
 
 fn ratio(statistic: &StatisticResult) -> String {

@@ -7,7 +7,7 @@ use crate::certify::Compiled;
 use crate::check::diff;
 use crate::check::plan::{Expr, Kind, LimitName, Plan, Quantity, Scalar, Type};
 use crate::result::impact::Margin;
-use crate::result::{Outcome, QuantityResult};
+use crate::result::{Direction, Outcome, QuantityResult, StatisticResult};
 use crate::run::{Evaluated, Given, Judged, overall};
 use crate::source::Span;
 use crate::units::Dimension;
@@ -23,6 +23,8 @@ pub struct Written {
     pub changed: bool,
     quantity: usize,
     span: Span,
+    /// Of a limit between two edges, which of them.
+    edge: Option<Direction>,
 }
 
 /// The limits of a protocol. `changed` gives the name of those that differ from the old one.
@@ -35,12 +37,21 @@ pub fn limits(compiled: &Compiled, changed: impl Fn(&Span) -> Option<String>) ->
         for field in block.fields_named("limit") {
             let span = field.value.span.clone();
             let new = changed(&span);
-            found.push(Written {
-                changed: new.is_some(),
-                rule: new.unwrap_or_else(|| diff::rule_of(block, field)),
-                quantity,
-                span,
-            });
+            let (changed, rule) =
+                (new.is_some(), new.unwrap_or_else(|| diff::rule_of(block, field)));
+            let limits = &compiled.plan.quantities[quantity].limits;
+            let between = limits.iter().any(|one| one.edge && same_place(&one.span, &span));
+            let edges = match between {
+                true => vec![
+                    (", lower edge", Some(Direction::AtLeast)),
+                    (", upper edge", Some(Direction::AtMost)),
+                ],
+                false => vec![("", None)],
+            };
+            found.extend(edges.into_iter().map(|(which, edge)| {
+                let (rule, span) = (format!("{rule}{which}"), span.clone());
+                Written { rule, changed, quantity, span, edge }
+            }));
         }
     }
     found
@@ -73,11 +84,16 @@ impl Found<'_> {
             result.statistics.iter().filter(|one| one.rule.line == line && one.rule.file == file);
         // Of several groups, the limit of the one that is nearest to it.
         let distance = |ratio: Option<f64>| ratio.map_or(f64::INFINITY, |ratio| ratio.ln().abs());
-        let limits = in_force.filter_map(|one| Some((one.limit?, &one.unit, one.normalised)));
+        let limits =
+            in_force.flat_map(|one| one.compared().into_iter().map(move |edge| (one, edge)));
+        let limits = limits.filter(|(_, edge)| limit.edge.is_none_or(|of| of == edge.direction));
+        let limits =
+            limits.filter_map(|(one, edge)| Some((edge.limit?, &one.unit, edge.normalised)));
         let (value, unit, _) = limits.min_by(|a, b| distance(a.2).total_cmp(&distance(b.2)))?;
         let mut factors: Vec<f64> = result
             .statistics
             .iter()
+            .flat_map(StatisticResult::compared)
             .filter_map(|one| Some((one.value? / one.limit?).abs()))
             .filter(|factor| factor.is_finite() && *factor > 0.0)
             .collect();
@@ -100,7 +116,9 @@ impl Found<'_> {
     fn with(&self, limit: &Written, factor: f64) -> Outcome {
         let mut plan = self.plan.clone();
         for own in &mut plan.quantities[limit.quantity].limits {
-            if same_place(&own.span, &limit.span) {
+            if same_place(&own.span, &limit.span)
+                && limit.edge.is_none_or(|edge| edge == own.direction)
+            {
                 let place = &own.bound.expr.span;
                 let by =
                     Expr::number(Kind::Constant(Scalar::Number(factor)), Dimension::ONE, place);

@@ -131,6 +131,7 @@ mod tests {
             marginal: false,
             limit: None,
             direction: Direction::Magnitude,
+            edges: Vec::new(),
             normalised,
             sample: Sample::default(),
             regression: None,

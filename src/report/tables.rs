@@ -190,7 +190,7 @@ fn of_quantities(all: &[QuantityResult], campaign: &str) -> Result<Vec<File>, cs
     let mut files = vec![
         table(
             "summary",
-            "quantity, title, filter, processing, statistic = name, scope, pairs = count, n, unit, value, low 95 % = interval/0, high 95 % = interval/1, limit, direction, normalised, holds, marginal, reason",
+            "quantity, title, filter, processing, statistic = name, scope, pairs = count, n, unit, value, low 95 % = interval/0, high 95 % = interval/1, limit, direction, normalised, holds, marginal, reason, lower edge = edges/0/limit, upper edge = edges/1/limit",
             statistics,
         )?,
         table(

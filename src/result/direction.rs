@@ -32,12 +32,14 @@ impl Direction {
 
     /// The share of a limit that a value uses, up to 1 where it is met: |value| / limit; value /
     /// limit of `at most`; limit / value of `at least`, where both are above zero. A least value
-    /// below zero is used by values below zero only: value / limit, otherwise 0. `None`: the value
+    /// below zero is used by values below zero only: value / limit, otherwise 0. A largest value that
+    /// is not above zero is as a least one of the opposite sign. `None`: the value
     /// does not reach a limit above zero, and no share says how far it is away.
     pub fn share(self, value: f64, limit: f64) -> Option<f64> {
         let share = match (self, limit > 0.0) {
             (Self::Magnitude, true) => value.abs() / limit,
             (Self::AtMost, true) => value / limit,
+            (Self::AtMost, false) => return Self::AtLeast.share(-value, -limit),
             (Self::AtLeast, true) if value > 0.0 => limit / value,
             (Self::AtLeast, false) if value >= 0.0 => 0.0,
             (Self::AtLeast, false) => value / limit,

@@ -46,7 +46,7 @@ pub use parts::{
     Subject, SuspectedFactor, VehicleValue,
 };
 pub use quantity::{
-    Count, Figures, GroupRegression, GroupResult, LimitFactor, Outside, QuantityResult,
+    Count, EdgeResult, Figures, GroupRegression, GroupResult, LimitFactor, Outside, QuantityResult,
     RegressionAt, RegressionFigure, RegressionPoint, Reported, Sample, StatisticResult,
 };
 pub use reason::{FindingData, OfSections, Reason, UnusedSection};

@@ -218,6 +218,10 @@ pub struct StatisticResult {
     pub limit: Option<f64>,
     #[serde(default, skip_serializing_if = "Direction::is_default")]
     pub direction: Direction,
+    /// The lower and the upper edge of a limit `between` two. What else is here is of the edge of
+    /// which more is used.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub edges: Vec<EdgeResult>,
     /// As [`Direction::share`].
     pub normalised: Option<f64>,
     /// Mean and standard deviation of the values of the group, in the unit of the quantity.
@@ -249,7 +253,32 @@ pub struct StatisticResult {
     pub rule: RulePlace,
 }
 
+/// A statistic against one edge of a limit between two; of `each`, the value that is worst for it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct EdgeResult {
+    pub direction: Direction,
+    pub limit: Option<f64>,
+    pub value: Option<f64>,
+    pub normalised: Option<f64>,
+    pub holds: Option<bool>,
+}
+
 impl StatisticResult {
+    /// What is compared: each edge of a limit between two, or the whole.
+    pub fn compared(&self) -> Vec<EdgeResult> {
+        let Self { direction, limit, value, normalised, holds, .. } = *self;
+        match self.edges.is_empty() {
+            true => vec![EdgeResult { direction, limit, value, normalised, holds }],
+            false => self.edges.clone(),
+        }
+    }
+
+    /// The limits between which it must be.
+    pub fn between(&self) -> Option<(f64, f64)> {
+        let [lower, upper] = self.edges.as_slice() else { return None };
+        lower.limit.zip(upper.limit)
+    }
+
     /// Whether it is this statistic, of all values of its quantity.
     pub fn is_overall(&self, name: &StatisticName) -> bool {
         self.name == *name && self.scope.is_all()
@@ -274,6 +303,9 @@ pub struct GroupResult {
     pub low: Option<f64>,
     pub high: Option<f64>,
     pub limit: Option<f64>,
+    /// As of a [`StatisticResult`].
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub edges: Vec<EdgeResult>,
     pub ratio: Option<f64>,
     pub holds: Option<bool>,
     #[serde(flatten, with = "told::reason")]
@@ -313,6 +345,7 @@ impl GroupResult {
             low: statistic.interval.map(|(low, _)| low),
             high: statistic.interval.map(|(_, high)| high),
             limit: statistic.limit,
+            edges: statistic.edges.clone(),
             ratio: statistic.normalised,
             holds: statistic.holds,
             reason: statistic.reason.clone(),

@@ -327,6 +327,8 @@ pub enum Reason {
     },
     LimitDependsOnItself,
     LimitNotPositive,
+    EdgesCrossed,
+    EdgesCounted,
     /// Vehicles of one group have different limits.
     GiveEachItsOwn {
         reason: Box<Self>,

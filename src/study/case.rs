@@ -105,6 +105,10 @@ impl Case {
         {
             return Err(Reason::NothingDependsOnSections);
         }
+        let mut limits = pool.quantities.iter().flat_map(|quantity| &quantity.limits);
+        if matches!(rule, Rule::AtLeastLimits(_)) && limits.any(|limit| limit.edge) {
+            return Err(Reason::EdgesCounted);
+        }
         let mut strata = Vec::new();
         let of_zone = |inside: &dyn Fn(Option<&str>) -> bool| {
             let all = pool

@@ -304,6 +304,8 @@ pub struct Limit {
     pub estimate: Phrase,
     pub at_least: bool,
     pub at_most: bool,
+    /// The lower edge of `between ... and ...`, whose upper one is the bound.
+    pub lower: Option<Phrase>,
     pub bound: Phrase,
     pub factors: Vec<(Phrase, Phrase)>,
     pub only_when: Option<Phrase>,
@@ -395,6 +397,7 @@ impl Limit {
     pub fn same_slot(&self, other: &Self) -> bool {
         self.estimate == other.estimate
             && (self.at_least, self.at_most) == (other.at_least, other.at_most)
+            && self.lower.is_some() == other.lower.is_some()
             && self.scope == other.scope
     }
 }
@@ -403,7 +406,7 @@ impl Limit {
 impl PartialEq for Limit {
     fn eq(&self, other: &Self) -> bool {
         self.same_slot(other)
-            && self.bound == other.bound
+            && (&self.lower, &self.bound) == (&other.lower, &other.bound)
             && self.only_when == other.only_when
             && same_set(&self.factors, &other.factors)
     }

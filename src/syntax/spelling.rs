@@ -174,8 +174,9 @@ impl Speller {
             tight: true,
         };
         for (index, token) in tokens.iter().enumerate() {
-            // The bound of `mean -3 kN` has a sign of its own.
-            speller.value &= key != "limit" || index != 1 || token.text != "-";
+            // The bound of `mean -3 kN` and of `between -3 kN` has a sign of its own.
+            let bound = index == 1 || index > 1 && tokens[index - 1].text == "between";
+            speller.value &= !(key == "limit" && bound && token.text == "-");
             speller.add(*token, tokens.get(index + 1));
         }
         speller.out
@@ -291,6 +292,7 @@ mod tests {
             ("quantity", "limit", "(mean+3*std) 12 kN", "(mean + 3 * std) 12 kN"),
             ("quantity", "limit", "mean at least -3 kN", "mean at least -3 kN"),
             ("quantity", "limit", "mean -3 kN", "mean -3 kN"),
+            ("quantity", "limit", "mean between - 3 kN and -1kN", "mean between -3 kN and -1 kN"),
             ("quantity", "limit", "std 4 kN*(1+0.010*Q0 / kN)", "std 4 kN * (1 + 0.01 * Q0/kN)"),
             ("quantity", "limit", "mean 2 / 3 of std", "mean 2/3 of std"),
             ("quantity", "difference", "|simulated|-|measured|", "|simulated| - |measured|"),

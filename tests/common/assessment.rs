@@ -166,6 +166,7 @@ fn estimate(name: &str, zone: &str, wheelset: &str, values: &[PairValue]) -> Sta
         outside: Vec::new(),
         beyond: None,
         direction: fishplate::result::Direction::Magnitude,
+        edges: Vec::new(),
         divided_at: None,
         holds: (!open).then_some(value <= 46.0),
         factors: Vec::new(),

@@ -375,6 +375,7 @@ fn statistics(values: &[PairValue], unit: &str, limit: f64) -> Vec<StatisticResu
             outside: Vec::new(),
             beyond: None,
             direction: fishplate::result::Direction::Magnitude,
+            edges: Vec::new(),
             holds: Some(value.abs() <= limit),
             factors: Vec::new(),
             limit_text: text.into(),

@@ -24,6 +24,7 @@ pub fn limit(statistic: &str, bound: f64, ddof: usize, sections: usize) -> Poole
     PooledLimit {
         estimate: Pooled::Statistic(statistic, ddof),
         direction: Direction::Magnitude,
+        edge: false,
         title: statistic.title(ddof),
         scope: Scope::default(),
         inside: vec![true; sections],

@@ -66,3 +66,66 @@ fn a_bound_from_the_limit_of_another_quantity() {
         near(number(&one["limit"]), values[5] + values[6]);
     }
 }
+
+/// One row for both edges: the edge of which more is used decides, as a share that follows from the
+/// recorded value alone.
+#[test]
+fn a_limit_between_two_edges_is_one_row() {
+    let rules = |verdict: &str| {
+        format!(
+            "quantity Q_1 \"Leading\"\n  from   measured\n  of     Q at wheelset 1\n  value  mean - 50 kN\n  \
+               limit  mean between -4 kN and 2 kN\n  limit  each between -100 kN and 300 kN\n  \
+               limit  (mean + 60 kN) between 50 kN and 70 kN for each side\n  \
+               limit  (mean - 60 kN) between -90 kN and -20 kN\n  \
+               limit  (mean - 61 kN) between -90 kN and -80 kN\n  \
+               limit  (n) between wheel_load / (1 kN) and 8\n\nverdict\n  validated  when {verdict}\n"
+        )
+    };
+    let found = results(&rules("every limit holds"));
+    let quantity = &found["quantities"][0];
+    let values: Vec<f64> = quantity["values"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .map(|one| number(&one["value"]))
+        .collect();
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let share = |value: f64, low: f64, high: f64| -> Option<f64> {
+        let of = |value: f64, least: f64| match (least > 0.0, value > 0.0) {
+            (true, true) => Some(least / value),
+            (true, false) => None,
+            (false, _) => Some((value / least).max(0.0)),
+        };
+        Some(of(value, low)?.max(of(-value, -high)?))
+    };
+    let check = |row: &Value, value: f64, (low, high): (f64, f64)| {
+        let edge = |at: usize| number(&row["edges"][at]["limit"]);
+        assert_eq!((edge(0), edge(1)), (low, high), "{row}");
+        assert_eq!(row["holds"], Value::from(low <= value && value <= high), "{row}");
+        near(number(&row["value"]), value);
+        match share(value, low, high) {
+            Some(share) => near(number(&row["normalised"]), share),
+            None => assert!(row["normalised"].is_null(), "{row}"),
+        }
+    };
+    assert_eq!(quantity["statistics"].as_array().expect("a list").len(), 7);
+    check(statistics(quantity, "mean")[0], mean, (-4.0, 2.0));
+    check(statistics(quantity, "mean - 60 kN")[0], mean - 60.0, (-90.0, -20.0));
+    check(statistics(quantity, "mean - 61 kN")[0], mean - 61.0, (-90.0, -80.0));
+    for side in statistics(quantity, "mean + 60 kN") {
+        check(side, number(&side["value"]), (50.0, 70.0));
+    }
+    let worst = |low: f64, high: f64| {
+        let share = |value: &&f64| share(**value, low, high).expect("a share");
+        *values.iter().max_by(|a, b| share(a).total_cmp(&share(b))).expect("a value")
+    };
+    check(statistics(quantity, "each")[0], worst(-100.0, 300.0), (-100.0, 300.0));
+    // 50 is above 8: no value is between them.
+    let crossed = statistics(quantity, "n")[0];
+    assert!(crossed["holds"].is_null(), "{crossed}");
+    let reason = crossed["reason"].as_str().expect("a reason");
+    assert!(reason.contains("lower edge is above its upper one"), "{reason}");
+    // A limit with two edges counts once.
+    let rule = "at least 6 limits hold";
+    assert_eq!(results(&rules(rule))["verdict"], "not assessable");
+}

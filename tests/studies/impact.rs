@@ -311,7 +311,8 @@ fn a_margin_is_where_the_verdict_changes() {
     let archive: Vec<String> = (0..4).map(|number| campaign(temp.path(), number)).collect();
     let text = fs::read_to_string(case("old")).expect("a protocol");
     let new = temp.path().join("new.fp");
-    fs::write(&new, text.replace("each 2 kN", "each 1.9 kN").replace("std 1 kN", "std 0.9 kN"))
+    let edges = "each between -1.9 kN and 1.9 kN";
+    fs::write(&new, text.replace("each 2 kN", edges).replace("std 1 kN", "std 0.9 kN"))
         .expect("written");
     let found =
         impact([&case("old"), &new.display().to_string()], &archive, &temp.path().join("out"));
@@ -334,7 +335,8 @@ fn a_margin_is_where_the_verdict_changes() {
         let at = margin["flips_at"].as_f64().expect("a number");
         let written = match margin["rule"].as_str() {
             Some("quantity qa, limit std") => "std 0.9 kN",
-            Some("quantity qc, limit each") => "each 1.9 kN",
+            Some("quantity qc, limit each, lower edge") => "between -1.9 kN",
+            Some("quantity qc, limit each, upper edge") => "and 1.9 kN",
             other => panic!("{other:?} did not change"),
         };
         let verdicts = [1.0 - 1e-6, 1.0 + 1e-6].map(|factor| {

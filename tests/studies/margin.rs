@@ -177,6 +177,27 @@ fn margins_agree_with_closed_forms() {
     assert!((0.4..0.4 + 1e-3 * 0.6).contains(&share), "{share}");
 }
 
+/// Each edge is moved by itself: -0.4 kN is a fifth of the lower one, 0.3 kN three fifths of the upper
+/// one, and -2.5 kN lies a quarter beyond the lower one.
+#[test]
+fn each_edge_of_a_limit_has_its_margin() {
+    let of = |force: f64, edge: &str| {
+        let campaign = campaign(Means { force, ..NEAR }, "");
+        let edges = "limit       mean between -2 kN * share and 0.5 kN";
+        let text = PROTOCOL.replace("limit       mean share * 1 kN", edges);
+        fs::write(campaign.path().join("protocol.fp"), text).expect("written");
+        let study = found(campaign.path(), &[]);
+        let margin = margin(&study, "limit", &format!("mean of mean_force, {edge} edge"));
+        [&margin["low"], &margin["high"]]
+            .map(|end| end.as_f64().map(|end| (1e6 * end).round() / 1e6))
+    };
+    assert_eq!(of(10.4, "lower"), [Some(-80.0), None]);
+    assert_eq!(of(9.7, "upper"), [Some(-40.0), None]);
+    assert_eq!(of(12.5, "lower"), [None, Some(25.0)]);
+    // What meets neither edge by moving the other one.
+    assert_eq!(of(9.0, "upper"), [None, Some(100.0)]);
+}
+
 #[test]
 fn choices_that_flip_the_verdict_are_named() {
     let near = campaign(NEAR, "");

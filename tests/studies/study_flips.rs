@@ -26,6 +26,7 @@ fn case(seed: u64, rule: Rule, unused: &[usize]) -> Case {
     let limit = |name: &str, bound: f64| PooledLimit {
         estimate: Pooled::Statistic(Statistic::named(name).expect("a statistic"), 1),
         direction: Direction::Magnitude,
+        edge: false,
         title: name.into(),
         scope: Scope::default(),
         positions: Vec::new(),

@@ -11,6 +11,9 @@ use crate::units::Unit;
 pub struct Limit {
     pub estimate: Estimate,
     pub direction: Direction,
+    /// Whether it is an edge of `between ... and ...`. The lower one, which is `at least`, stands
+    /// before the upper one, which is `at most`; both have the same place and scope.
+    pub edge: bool,
     pub bound: OfGroup,
     /// Each factor with the condition under which it applies.
     pub factors: Vec<(Expr, Expr)>,
@@ -23,6 +26,13 @@ pub struct Limit {
     /// A number in it is to be confirmed.
     pub unconfirmed: bool,
     pub span: Span,
+}
+
+impl Limit {
+    /// Whether it is the lower edge of two, of which the upper one stands behind it.
+    pub fn is_lower_edge(&self) -> bool {
+        self.edge && self.direction == Direction::AtLeast
+    }
 }
 
 /// An estimate without a limit. It is printed and decides nothing. One `for each zone` gives one

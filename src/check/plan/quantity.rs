@@ -120,6 +120,11 @@ impl Quantity {
         own.chain(named.filter_map(|input| input.signal.as_ref()))
     }
 
+    /// Number of its limits, of which one between two edges is one.
+    pub fn limits_written(&self) -> usize {
+        self.limits.iter().filter(|limit| !limit.is_lower_edge()).count()
+    }
+
     /// Whether the samples of the record are still available after the filter.
     pub fn keeps_samples(&self) -> bool {
         self.chain.iter().all(|step| step.kind.keeps_samples())

@@ -82,7 +82,9 @@ impl Levels {
         {
             for scope in scopes(statistic) {
                 let two_sided = two_sided && statistic.direction == Direction::Magnitude;
-                for value in statistic.limit.iter().flat_map(|limit| both(0.0, *limit, two_sided)) {
+                for value in
+                    statistic.limit.iter().flat_map(|limit| edges(statistic, *limit, two_sided))
+                {
                     levels.draw(Level { value, pen: LIMIT, scope: scope.clone() });
                 }
             }
@@ -165,7 +167,7 @@ impl Levels {
             let text = says_of_limit(statistic, with);
             self.number(&text);
             let pen = Pen { color: BLUE, ..LIMIT };
-            self.line(statistic, &both(0.0, limit, with.two_sided), pen, text);
+            self.line(statistic, &edges(statistic, limit, with.two_sided), pen, text);
         }
     }
 
@@ -198,7 +200,7 @@ impl Levels {
             let text = says_of_limit(statistic, with);
             // Limits of several estimates have a dash each.
             let pen = Pen { dash: LIMITS[self.number(&text) % NAMED], ..LIMIT };
-            self.line(statistic, &both(0.0, limit, with.two_sided), pen, text);
+            self.line(statistic, &edges(statistic, limit, with.two_sided), pen, text);
         }
     }
 }
@@ -240,6 +242,12 @@ fn center(quantity: &QuantityResult, of: &StatisticResult) -> f64 {
     })
 }
 
+/// Where the limits of a statistic are drawn.
+fn edges(statistic: &StatisticResult, limit: f64, two_sided: bool) -> Vec<f64> {
+    let between = statistic.between().map(|(low, high)| vec![low, high]);
+    between.unwrap_or_else(|| both(0.0, limit, two_sided))
+}
+
 fn both(center: f64, limit: f64, two_sided: bool) -> Vec<f64> {
     if two_sided { vec![center - limit, center + limit] } else { vec![center + limit] }
 }
@@ -269,8 +277,9 @@ fn says(statistic: &StatisticResult, value: &str) -> String {
 /// The limit of a statistic; without its number if it differs between groups.
 fn says_of_limit(statistic: &StatisticResult, Shown { two_sided, same }: Shown) -> String {
     let one = statistic.scope.is_all() || same && !statistic.scope.keys.is_empty();
-    let limit = statistic.limit.filter(|_| one).map(|limit| {
-        format!("{}{}", sign(two_sided, statistic.direction), shown(statistic, limit))
+    let limit = statistic.limit.filter(|_| one).map(|limit| match statistic.between() {
+        Some((low, high)) => format!("{} to {}", shown(statistic, low), shown(statistic, high)),
+        None => format!("{}{}", sign(two_sided, statistic.direction), shown(statistic, limit)),
     });
     format!(
         "limit of {} {}",
@@ -311,6 +320,7 @@ mod tests {
             marginal: false,
             limit: Some(limit),
             direction: Direction::Magnitude,
+            edges: Vec::new(),
             normalised: None,
             sample: Sample::default(),
             regression: None,

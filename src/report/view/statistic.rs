@@ -17,7 +17,11 @@ pub fn pairs_and_n(pairs: usize, n: usize) -> Cell {
 /// The limit, with the decimals of the value; `≥` before a least value.
 pub fn limit(statistic: Option<&StatisticResult>) -> Cell {
     let Some(one) = statistic else { return Cell::MISSING };
-    let cell = Cell::number(one.limit, Format::Fixed(decimals(one)));
+    let format = Format::Fixed(decimals(one));
+    if let Some((low, high)) = one.between() {
+        return Cell::text(format!("{} to {}", format.print(low), format.print(high)));
+    }
+    let cell = Cell::number(one.limit, format);
     match one.direction.sign() {
         "" => cell,
         sign => Cell::text(format!("{sign}{}", cell.printed().letters())),

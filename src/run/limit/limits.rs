@@ -7,8 +7,8 @@ use crate::check::evaluate::{flag, number};
 use crate::check::plan::{Estimate, EstimateKind, Limit, LimitName, Quantity, Report};
 use crate::metrics::statistics::{Divisor, mean, standard_deviation};
 use crate::result::{
-    Direction, LimitNotMet, Outside, Reason, RegressionFigure, RulePlace, Sample, Scope,
-    StatisticResult, Subject, VehicleValue,
+    Direction, EdgeResult, LimitNotMet, Outside, Reason, RegressionFigure, RulePlace, Sample,
+    Scope, StatisticResult, Subject, VehicleValue,
 };
 use crate::run::estimate::{Closeness, Group, Member, RowGroup, TooFew, count_independent};
 use crate::run::sections::{Facts, Known, Limits, Unit as Section, Vehicle};
@@ -59,6 +59,33 @@ pub struct Compared<'a> {
     pub own: Vec<(&'a Row, f64, Option<f64>)>,
 }
 
+impl Compared<'_> {
+    /// The comparisons of an estimate with both edges of a limit as one: that with the edge of which
+    /// more is used, or which is not met.
+    fn between(lower: Self, upper: Self) -> Self {
+        let edges: Vec<EdgeResult> =
+            [&lower, &upper].iter().flat_map(|one| one.result.compared()).collect();
+        let bounds = |one: &Self| -> Vec<f64> { one.own.iter().map(|own| own.1).collect() };
+        let each = bounds(&lower).into_iter().zip(bounds(&upper));
+        let mut pairs = each.chain(edges[0].limit.zip(edges[1].limit));
+        let crossed = pairs.any(|(low, high)| low > high);
+        let marginal = lower.result.marginal || upper.result.marginal;
+        let use_of = |one: &Self| match one.result.holds {
+            Some(holds) => (!holds, one.result.normalised.unwrap_or(f64::INFINITY)),
+            None => (true, f64::INFINITY),
+        };
+        let (mut worse, other) =
+            if use_of(&lower) > use_of(&upper) { (lower, upper) } else { (upper, lower) };
+        worse.own.extend(other.own);
+        (worse.result.edges, worse.result.marginal) = (edges, marginal);
+        if crossed {
+            (worse.result.holds, worse.fails) = (None, None);
+            worse.result.reason = Some(no_limit(Reason::EdgesCrossed));
+        }
+        worse
+    }
+}
+
 /// Rows and rules of one quantity.
 #[derive(Clone, Copy, Debug)]
 pub struct Judging<'a> {
@@ -102,7 +129,19 @@ pub fn applying<'m>(
 impl<'a> Judging<'a> {
     /// The estimates and limits of the quantity, group by group.
     pub fn compared(&self) -> Vec<Compared<'a>> {
-        self.quantity.limits.iter().flat_map(|limit| self.with_limit(limit)).collect()
+        let mut limits = self.quantity.limits.iter();
+        let mut all = Vec::new();
+        while let Some(limit) = limits.next() {
+            let found = self.with_limit(limit);
+            match if limit.is_lower_edge() { limits.next() } else { None } {
+                Some(upper) => {
+                    let edges = found.into_iter().zip(self.with_limit(upper));
+                    all.extend(edges.map(|(lower, upper)| Compared::between(lower, upper)));
+                }
+                None => all.extend(found),
+            }
+        }
+        all
     }
 
     /// The estimates of a limit, group by group; none where the limit does not apply to this
@@ -186,6 +225,7 @@ impl<'a> Judging<'a> {
             marginal: false,
             limit: None,
             direction: limit.direction,
+            edges: Vec::new(),
             normalised: None,
             sample: self.sample(members),
             regression: None,
@@ -414,7 +454,7 @@ impl OfGroup<'_> {
                 value *= number(factor, &names)?;
             }
         }
-        if value <= 0.0 && limit.direction != Direction::AtLeast {
+        if value <= 0.0 && limit.direction != Direction::AtLeast && !limit.edge {
             return Err(Reason::LimitNotPositive);
         }
         Ok(value)

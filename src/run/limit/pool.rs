@@ -220,6 +220,8 @@ impl std::fmt::Debug for Estimator {
 pub struct PooledLimit {
     pub estimate: Pooled,
     pub direction: Direction,
+    /// One of two edges of a limit.
+    pub edge: bool,
     /// As printed: `standard deviation (n-1)`.
     pub title: String,
     pub scope: Scope,
@@ -407,6 +409,7 @@ impl Making<'_> {
         Some(PooledLimit {
             estimate,
             direction: limit.direction,
+            edge: limit.edge,
             title: limit.estimate.title.clone(),
             scope: part.scope(),
             inside,

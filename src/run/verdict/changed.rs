@@ -3,7 +3,7 @@
 use super::judge::Judged;
 use super::verdicts::{Given, decide};
 use crate::check::plan::{Decision, Plan};
-use crate::result::{Direction, QuantityResult, Reason, StatisticResult, Verdict};
+use crate::result::{Direction, EdgeResult, QuantityResult, Reason, Verdict};
 
 /// A limit, or all of them, and the factors at which the verdict changes.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,6 +30,8 @@ struct Edge {
     factor: f64,
     /// Whether a larger limit is easier to meet.
     upper: bool,
+    /// Of a limit between two edges, whether the other one is met.
+    other: Option<bool>,
 }
 
 /// The changes of each limit of the overall verdict, and of all together. A verdict that is not
@@ -47,18 +49,26 @@ pub fn limit_changes(plan: &Plan, judged: &Judged) -> Vec<LimitChange> {
     let mut lines: Vec<(String, Vec<Edge>)> = Vec::new();
     for &index in quantities {
         for (at, statistic) in bare[index].statistics.iter().enumerate() {
-            let Some(factor) = factor(statistic) else { continue };
-            let upper = statistic.direction != Direction::AtLeast;
-            let edge = Edge { quantity: index, statistic: at, factor, upper };
-            let name = format!("{} of {}", statistic.name, bare[index].id);
-            let same = |other: &Edge| {
-                other.quantity == index
-                    && bare[index].statistics[other.statistic].rule.line == statistic.rule.line
-            };
-            // The groups of a limit have it in common.
-            match lines.last_mut().filter(|(known, edges)| *known == name && same(&edges[0])) {
-                Some((_, edges)) => edges.push(edge),
-                None => lines.push((name, vec![edge])),
+            let compared = statistic.compared();
+            for (nth, one) in compared.iter().enumerate() {
+                let Some(factor) = factor(one) else { continue };
+                let upper = one.limit.is_none_or(|limit| limit > 0.0)
+                    != (one.direction == Direction::AtLeast);
+                let other = compared.iter().rev().nth(nth).filter(|_| compared.len() > 1);
+                let other = other.and_then(|other| other.holds);
+                let edge = Edge { quantity: index, statistic: at, factor, upper, other };
+                let which = other.map_or("", |_| [", lower edge", ", upper edge"][nth]);
+                let name = format!("{} of {}{which}", statistic.name, bare[index].id);
+                let same = |other: &Edge| {
+                    other.quantity == index
+                        && bare[index].statistics[other.statistic].rule.line == statistic.rule.line
+                };
+                // The groups of a limit have it in common.
+                let known = lines.iter_mut().rev().take(compared.len());
+                match known.into_iter().find(|(known, edges)| *known == name && same(&edges[0])) {
+                    Some((_, edges)) => edges.push(edge),
+                    None => lines.push((name, vec![edge])),
+                }
             }
         }
     }
@@ -75,12 +85,12 @@ pub fn limit_changes(plan: &Plan, judged: &Judged) -> Vec<LimitChange> {
 }
 
 /// The factor of the limit at which the value is at it.
-fn factor(statistic: &StatisticResult) -> Option<f64> {
-    statistic.holds?;
-    let share = statistic.normalised?;
-    let factor = match statistic.direction {
-        Direction::AtLeast if statistic.limit.is_none_or(|limit| limit > 0.0) => share.recip(),
-        _ => share,
+fn factor(compared: &EdgeResult) -> Option<f64> {
+    compared.holds?;
+    let share = || Some(compared.value? / compared.limit?);
+    let factor = match compared.direction {
+        Direction::Magnitude => compared.normalised?,
+        Direction::AtMost | Direction::AtLeast => share()?,
     };
     (factor.is_finite() && factor > 0.0).then_some(factor)
 }
@@ -114,13 +124,23 @@ fn decided(
 ) -> Verdict {
     let mut quantities = bare.to_vec();
     for edge in edges {
+        quantities[edge.quantity].statistics[edge.statistic].holds = Some(true);
+    }
+    for edge in edges {
         let beyond = side * (factor - edge.factor) >= 0.0;
         // A larger limit is met by what has its edge below the factor.
         let met = match (edge.upper, side > 0.0) {
             (true, true) | (false, false) => beyond,
             (true, false) | (false, true) => !beyond,
         };
-        quantities[edge.quantity].statistics[edge.statistic].holds = Some(met);
+        let beside = |other: &&Edge| {
+            !std::ptr::eq(*other, *edge)
+                && (other.quantity, other.statistic) == (edge.quantity, edge.statistic)
+        };
+        let other = edge.other.is_none_or(|met| met || edges.iter().any(beside));
+        if !(met && other) {
+            quantities[edge.quantity].statistics[edge.statistic].holds = Some(false);
+        }
     }
     let fails: Vec<Vec<Reason>> = quantities
         .iter_mut()

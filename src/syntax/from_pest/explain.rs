@@ -298,6 +298,7 @@ fn in_words(rule: Rule) -> &'static str {
         statistic => "a statistic such as `mean` or `std`, or an estimate in parentheses",
         at_least => "`at least`",
         at_most => "`at most`",
+        between | kw_between => "`between`",
         limit_part => "`doubled when`, `times`, `only when` or `for zones`",
         doubled | kw_doubled => "`doubled when`",
         times | kw_times => "`times ... when`",

@@ -101,12 +101,20 @@ pub fn limit(text: &Text, problems: &mut Problems) -> Option<Limit> {
     let estimate = estimate(first)?;
     let mut next_is = |rule| inner.next_if(|part| part.rule == rule).is_some();
     let (at_least, at_most) = (next_is(Rule::at_least), next_is(Rule::at_most));
+    let mut bound = inner.next()?;
+    let (mut lower, between) = (None, bound.rule == Rule::between);
+    if between {
+        let mut edges = bound.by_ref().filter(|part| part.rule == Rule::sum);
+        lower = Some(sum(edges.next()?)?);
+        bound = edges.next()?;
+    }
     let mut limit = Limit {
         statistic,
         estimate,
         at_least,
         at_most,
-        bound: cases(inner.next()?)?,
+        lower,
+        bound: if between { sum(bound)? } else { cases(bound)? },
         factors: Vec::new(),
         only_when: None,
         scope: Scope::default(),
