@@ -77,7 +77,7 @@ pub const FUNCTIONS: &[Function] = &[
 ];
 
 /// Functions of a signal along its axis: name, arguments and result, description.
-pub const SIGNAL_FUNCTIONS: [(&str, &str, &str); 3] = [
+pub const SIGNAL_FUNCTIONS: [(&str, &str, &str); 4] = [
     (
         "shifted",
         "(signal<D>, distance along the axis) -> signal<D>",
@@ -92,5 +92,10 @@ pub const SIGNAL_FUNCTIONS: [(&str, &str, &str); 3] = [
         "integral",
         "(signal<D>) -> signal<D times axis>",
         "Integral by the trapezoidal rule, 0 at the first sample of the record. With a second argument `time`, the integral over time.",
+    ),
+    (
+        "spectrum",
+        "(signal<D>, segment: a time, overlap: a share, from: a frequency, to: a frequency) -> spectrum<D^2 per frequency>",
+        "Power spectral density of the section, one-sided, by Welch's method: Hann windows of this length, each without its mean. The overlap (50 % unless said) and the band may be left out.",
     ),
 ];

@@ -84,7 +84,7 @@ impl Checker<'_> {
             {
                 Meaning::Open
             }
-            Node::Path(path) if self.is_signal(path) => Meaning::Signal,
+            Node::Path(path) if self.is_signal(path) || self.is_frequency(path) => Meaning::Signal,
             Node::Path(path) => match self.names.defines.get(path) {
                 Some(define) if seen.insert(path.clone()) => self.stands_for(define, seen),
                 _ => Meaning::Closed,

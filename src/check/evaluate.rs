@@ -156,6 +156,8 @@ pub fn shape(expr: &Expr) -> String {
         Kind::Call(function, _) => function.name.into(),
         Kind::Filtered(_, steps) => format!("{steps:?}"),
         Kind::OverAxis(operation, _) => format!("{operation:?}"),
+        Kind::OfSection(operation, _) => format!("{operation:?}"),
+        Kind::Frequency => "frequency".into(),
         Kind::Level(reducer, _) => format!("{} of", reducer.in_words()),
         Kind::Cases(arms, _) => format!("cases{}", arms.len()),
     };

@@ -12,7 +12,7 @@ impl Type {
     /// A number, or a number for each sample, of another dimension.
     pub fn of_dimension(&self, dimension: Dimension) -> Self {
         match *self {
-            Self::Samples { track, .. } => Self::Samples { dimension, track },
+            Self::Samples { points, .. } => Self::Samples { dimension, points },
             _ => Self::Number(dimension),
         }
     }
@@ -23,6 +23,16 @@ impl Type {
             Self::Number(dimension) | Self::Samples { dimension, .. } => dimension.in_words(),
             Self::Word(_) => "a word".into(),
             Self::Flag | Self::SampleFlags { .. } => "a condition".into(),
+        }
+    }
+}
+
+impl Points {
+    fn in_words(self) -> &'static str {
+        match self {
+            Self::Record => "samples of a record",
+            Self::Track => "samples of the track record",
+            Self::Spectrum => "lines of a spectrum",
         }
     }
 }
@@ -315,35 +325,37 @@ impl Checker<'_> {
     pub fn of_one_record(&mut self, dimension: Dimension, parts: &[&Expr]) -> Option<Type> {
         match self.record_of(parts)? {
             None => Some(Type::Number(dimension)),
-            Some(track) => Some(Type::Samples { dimension, track }),
+            Some(points) => Some(Type::Samples { dimension, points }),
         }
     }
 
     /// The type of a condition on two parts: for each sample if one of them has samples.
     fn condition_type(&mut self, left: &Expr, right: &Expr) -> Option<Type> {
-        let track = self.record_of(&[left, right])?;
-        Some(track.map_or(Type::Flag, |track| Type::SampleFlags { track }))
+        let points = self.record_of(&[left, right])?;
+        Some(points.map_or(Type::Flag, |points| Type::SampleFlags { points }))
     }
 
-    /// Whether the samples of these parts are those of the track record; `Some(None)` where no part
-    /// has samples.
-    pub fn record_of(&mut self, parts: &[&Expr]) -> Option<Option<bool>> {
-        let of_samples =
-            |part: &&&Expr| matches!(part.ty, Type::Samples { .. } | Type::SampleFlags { .. });
-        let mut sampled = parts.iter().filter(of_samples);
-        let Some(first) = sampled.next() else { return Some(None) };
-        let track = first.track();
-        match sampled.find(|other| other.track() != track) {
-            None => Some(Some(track)),
-            Some(other) => self.refuse(
-                error(
-                    "mixed-records",
-                    "a channel of the track record cannot be combined with one of simulation and measurement, sample by sample",
-                    &other.span,
-                )
-                .also(&first.span, "the other record"),
-            ),
+    /// What the samples of these parts are taken at; `Some(None)` where no part has samples.
+    pub fn record_of(&mut self, parts: &[&Expr]) -> Option<Option<Points>> {
+        let mut sampled = parts.iter().filter_map(|part| Some((part, part.points()?)));
+        let Some((first, points)) = sampled.next() else { return Some(None) };
+        let Some((other, others)) = sampled.find(|(_, others)| *others != points) else {
+            return Some(Some(points));
+        };
+        if points == Points::Spectrum || others == Points::Spectrum {
+            let says = "the lines of a spectrum and the samples of a record cannot be combined";
+            let help = "take a number of the samples, `mean of Y`, or the spectrum of the whole, `spectrum(Y - Q, 4 s)`";
+            let problem = error("mixed-records", says, &other.span).help(help);
+            return self.refuse(problem.also(&first.span, points.in_words()));
         }
+        self.refuse(
+            error(
+                "mixed-records",
+                "a channel of the track record cannot be combined with one of simulation and measurement, sample by sample",
+                &other.span,
+            )
+            .also(&first.span, "the other record"),
+        )
     }
 
     /// Reports two operands that do not agree.

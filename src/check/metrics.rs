@@ -317,7 +317,7 @@ impl Checker<'_> {
             ));
         };
         let (metric, over) = self.metric_filled(entry, &WrittenStep { parts, when: None }, span)?;
-        let over = if_written(over.map(|over| self.signal(&over, &scope.at)))?;
+        let over = if_written(over.map(|over| self.record_signal(&over, &scope.at)))?;
         self.metric_input(metric, over, span, scope)
     }
 
@@ -400,7 +400,7 @@ impl Checker<'_> {
                 .help(help),
             );
         }
-        self.signal(over, at)
+        self.record_signal(over, at)
     }
 
     /// A value taken from the samples of both sides: `rms of (simulated - measured)`.
@@ -421,8 +421,9 @@ impl Checker<'_> {
         let own = own.filter(|_| metrics);
         let mut samples = Scope { may_miss: true, ..Scope::samples(&scope.at, own) };
         let signal = self.expr(signal, &mut samples)?;
+        let signal = self.at_frequencies(signal)?;
         self.only_both(&signal)?;
-        let dimension = reducer.gives(signal.dimension(), axis);
+        let dimension = reducer.gives(signal.dimension(), signal.along(axis));
         let own = Input::own(Taken::OfBoth(reducer), InputSide::Own, span);
         Some(scope.input(Input { signal: Some(signal), ..own }, dimension, span))
     }

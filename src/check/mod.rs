@@ -50,6 +50,7 @@ mod samples;
 mod scope;
 mod signals;
 mod slips;
+mod spectra;
 mod steps;
 mod tables;
 mod transfer;

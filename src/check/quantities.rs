@@ -260,6 +260,7 @@ impl Checker<'_> {
                 continue;
             }
             let samples = self.signal_where(&phrase, &places, &whole(of))?;
+            self.of_record(&samples, &of.span)?;
             if samples.track() {
                 return self.refuse(error(
                     "track-quantity",

@@ -127,8 +127,11 @@ impl Checker<'_> {
         let may_miss = over.is_none() && chain.is_empty();
         let signal = self.expr(signal, &mut Scope { may_miss, ..Scope::samples(at, None) });
         let over = if_written(over.map(|over| self.slope_axis(found, over, reducer, at)))?;
-        let signal = signal?;
-        let axis = over.as_ref().map_or(axis, Expr::dimension);
+        let signal = self.at_frequencies(signal?)?;
+        if over.is_some() || !chain.is_empty() {
+            self.of_record(&signal, span)?;
+        }
+        let axis = over.as_ref().map_or(signal.along(axis), Expr::dimension);
         let dimension = found.gives(after(&chain, signal.dimension()), axis);
         let own = Input::own(Taken::Reduced(found), side, span);
         let input = Input { signal: Some(signal), chain, over, ..own };
@@ -304,6 +307,10 @@ impl Checker<'_> {
         }
         if self.is_signal(name) {
             return self.signal_at(name, span, scope);
+        }
+        if self.is_frequency(name) {
+            let (dimension, points) = (Dimension::FREQUENCY, Points::Spectrum);
+            return Some(Expr::samples(Kind::Frequency, dimension, points, span));
         }
         if self.names.defines.contains_key(name) {
             return self.defined(name, span, scope);

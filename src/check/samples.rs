@@ -35,6 +35,7 @@ impl Checker<'_> {
                 Some(matches!(argument.ty, Type::Samples { .. } | Type::SampleFlags { .. }))
             }
             Node::Path(path) if self.is_signal(path) || Side::named(path).is_some() => Some(true),
+            Node::Path(path) if self.is_frequency(path) => Some(true),
             Node::PlaceOf(..) | Node::Through(..) => Some(true),
             Node::Reduced(..) => Some(false),
             _ => None,
@@ -113,12 +114,17 @@ impl Checker<'_> {
         let of_both = self.names_side(condition);
         let own = own.filter(|_| metrics && of_both);
         let condition = self.condition(condition, &mut Scope::samples(&scope.at, own))?;
+        let condition = self.at_frequencies(condition)?;
         if !matches!(condition.ty, Type::SampleFlags { .. }) {
             let says = "this condition is not about the samples of a signal";
             let help = "name a signal in it: `share where Q < 10 kN`";
             return self.refuse(error("no-samples", says, &condition).help(help));
         }
-        let dimension = taken.gives(Dimension::ONE, over.as_ref().map_or(axis, Expr::dimension));
+        if over.is_some() {
+            self.of_record(&condition, span)?;
+        }
+        let along = over.as_ref().map_or(condition.along(axis), Expr::dimension);
+        let dimension = taken.gives(Dimension::ONE, along);
         let input = if of_both {
             self.only_both(&condition)?;
             Input::own(Taken::OfBoth(taken), InputSide::Own, span)
@@ -151,7 +157,7 @@ impl Checker<'_> {
                 let (unit, column) = (time.unit, time.column);
                 let dimension = unit.dimension;
                 let kind = Kind::Channel { channel: column.clone(), column, unit };
-                let time = Expr::samples(kind, dimension, false, span);
+                let time = Expr::samples(kind, dimension, Points::Record, span);
                 Some((Reducer::Named(&LONGEST_RUN), Some(time)))
             }
             Counted::LongestRun { .. } => Some((Reducer::Named(&LONGEST_RUN), None)),

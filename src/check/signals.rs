@@ -30,9 +30,10 @@ impl Checker<'_> {
             return self
                 .refuse(error("window-in-signal", says, &span).also(&window.span, "this step"));
         }
-        let (dimension, track) = (after(&steps, inner.dimension()), inner.track());
+        let points = self.of_record(&inner, &span)?;
+        let dimension = after(&steps, inner.dimension());
         let kind = Kind::Filtered(Box::new(inner), steps);
-        Some(Expr::samples(kind, dimension, track, &span))
+        Some(Expr::samples(kind, dimension, points, &span))
     }
 
     /// An operation along the axis: `shifted(X, 2 m)`, `derivative(X)`, `integral(X, time)`.
@@ -43,6 +44,9 @@ impl Checker<'_> {
         span: Origin,
         scope: &mut Scope,
     ) -> Option<Expr> {
+        if name.node == "spectrum" {
+            return self.spectrum(name, arguments, span, scope);
+        }
         let shifted = name.node == "shifted";
         let (of, second) = match arguments {
             [of] if !shifted => (of, None),
@@ -92,6 +96,7 @@ impl Checker<'_> {
             _ => AxisOperation::Integral { over_time },
         };
         let signal = signal?;
+        let points = self.of_record(&signal, &span)?;
         if over_time && signal.track() {
             return self.refuse(
                 error("arguments", "the track record has no time", &span)
@@ -104,9 +109,8 @@ impl Checker<'_> {
             AxisOperation::Derivative { .. } => signal.dimension() / along,
             AxisOperation::Integral { .. } => signal.dimension() * along,
         };
-        let track = signal.track();
         let kind = Kind::OverAxis(operation, Box::new(signal));
-        Some(Expr::samples(kind, dimension, track, &span))
+        Some(Expr::samples(kind, dimension, points, &span))
     }
 
     /// `mean of Y` among samples: the number of the section, taken from each of them.
@@ -120,9 +124,10 @@ impl Checker<'_> {
         let reducer = self.reducer(reducer, true)?;
         scope.may_miss = true;
         let of = self.expr(of, scope)?;
-        let dimension = reducer.gives(of.dimension(), self.axis_dimension());
-        let track = of.track();
-        Some(Expr::samples(Kind::Level(reducer, Box::new(of)), dimension, track, &span))
+        let of = self.at_frequencies(of)?;
+        let dimension = reducer.gives(of.dimension(), of.along(self.axis_dimension()));
+        let points = of.points().unwrap_or(Points::Record);
+        Some(Expr::samples(Kind::Level(reducer, Box::new(of)), dimension, points, &span))
     }
 
     /// Whether a channel or signal has this name.
@@ -138,7 +143,7 @@ impl Checker<'_> {
                 "elsewhere an expression is evaluated for simulation and measurement alike",
             ));
         };
-        Some(Expr::samples(Kind::Side(side), dimension, false, span))
+        Some(Expr::samples(Kind::Side(side), dimension, Points::Record, span))
     }
 
     /// Reports a name of no channel or signal.
@@ -172,7 +177,8 @@ impl Checker<'_> {
             let unit = signal.unit?;
             let dimension = unit.dimension;
             let kind = Kind::Channel { column, channel: name.to_string(), unit };
-            return Some(Expr::samples(kind, dimension, signal.track, span));
+            let points = if signal.track { Points::Track } else { Points::Record };
+            return Some(Expr::samples(kind, dimension, points, span));
         };
         let of_place = |place: &String| Some((place.clone(), scope.at.get(place)?.clone()));
         let own: Assignment = signal.places.iter().filter_map(of_place).collect();

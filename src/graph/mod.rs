@@ -20,7 +20,7 @@ use std::sync::Arc;
 use crate::catalog::{Function, Metric, Reducer};
 use crate::check::plan::{
     AxisOperation, Decision, Evaluation, Expr, InputSide, Limit, Mapping, Operator, Report,
-    StepSpec,
+    SectionOperation, StepSpec,
 };
 use crate::source::Span;
 use crate::units::Dimension;
@@ -137,6 +137,8 @@ pub enum Operation {
     Cut,
     /// A step inside the section.
     Window(StepSpec),
+    /// A signal with samples of its own, from those of the section.
+    OfSection(SectionOperation),
     /// A value of a signal; for a slope, the second input can replace the axis.
     Reduce(Reducer),
     /// A number of one record, computed from values of signals.
@@ -168,7 +170,7 @@ impl Operation {
             | Self::Select(_)
             | Self::Choose(_) => Stage::Derive,
             Self::Step(_) => Stage::Filter,
-            Self::Window(_) => Stage::Window,
+            Self::Window(_) | Self::OfSection(_) => Stage::Window,
             Self::Cut | Self::Present => Stage::Cut,
             Self::Reduce(_) | Self::Value(_) => Stage::Process,
             Self::Compare(_) => Stage::Compare,

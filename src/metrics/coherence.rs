@@ -2,13 +2,13 @@
 //! frequency (Welch).
 
 use std::cell::OnceCell;
-use std::f64::consts::TAU;
 use std::ops::Range;
 
 use realfft::num_complex::Complex;
 
 use super::pair::lag::{Agreement, best_shift, overlap};
 use super::pair::{Metric, Undefined, undefined};
+use super::welch::{Trend, Windows};
 
 /// Number of samples of a window. The spectral lines are 1/256 of the sampling rate apart: 0.8 Hz
 /// at 200 samples per second.
@@ -133,14 +133,6 @@ pub fn least_ratio(of: (&[f64], &[f64]), rate: f64, band: (f64, f64)) -> Metric 
     Ok(least)
 }
 
-/// What is taken away from each window.
-#[derive(Clone, Copy, PartialEq)]
-enum Trend {
-    Mean,
-    /// The regression line: the lines of a slow change would cover the noise.
-    Line,
-}
-
 /// Spectra of two signals, summed over windows.
 struct Spectra {
     window: usize,
@@ -156,30 +148,7 @@ impl Spectra {
         window: usize,
         trend: Trend,
     ) -> Result<Self, Undefined> {
-        let hann: Vec<f64> =
-            (0..window).map(|k| 0.5 - 0.5 * (TAU * k as f64 / window as f64).cos()).collect();
-        let transform = super::fourier::forward(window);
-        let middle = (window - 1) as f64 / 2.0;
-        let spread = (window * (window * window - 1)) as f64 / 12.0;
-        let spectrum = |part: &[f64]| -> Result<Vec<Complex<f64>>, Undefined> {
-            let mean = part.iter().sum::<f64>() / window as f64;
-            let slope = match trend {
-                Trend::Mean => 0.0,
-                Trend::Line => {
-                    let of = |(k, value): (usize, &f64)| (k as f64 - middle) * value;
-                    part.iter().enumerate().map(of).sum::<f64>() / spread
-                }
-            };
-            let line = |k: usize| mean + slope * (k as f64 - middle);
-            let values = part.iter().zip(&hann).enumerate();
-            let mut windowed: Vec<f64> =
-                values.map(|(k, (value, weight))| (value - line(k)) * weight).collect();
-            let mut found = transform.make_output_vec();
-            transform
-                .process(&mut windowed, &mut found)
-                .map_err(|error| Undefined::because(error.to_string()))?;
-            Ok(found)
-        };
+        let windows = Windows::new(window, trend);
         let lines = window / 2 + 1;
         let mut all = Self {
             window,
@@ -189,11 +158,8 @@ impl Spectra {
             of_both: vec![Complex::new(0.0, 0.0); lines],
         };
         // 50 % overlap.
-        for start in (0..=simulated.len() - window).step_by(window / 2) {
-            let (s, m) = (
-                spectrum(&simulated[start..start + window])?,
-                spectrum(&measured[start..start + window])?,
-            );
+        for start in windows.starts(simulated.len(), window / 2) {
+            let (s, m) = (windows.lines(simulated, start)?, windows.lines(measured, start)?);
             for (line, (s, m)) in s.iter().zip(&m).enumerate() {
                 all.of_simulated[line] += s.norm_sqr();
                 all.of_measured[line] += m.norm_sqr();
@@ -257,6 +223,8 @@ impl Spectra {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::TAU;
+
     use super::*;
     use crate::metrics::random::mixed;
 

@@ -26,6 +26,7 @@
 //! | [`drift`] | signals of two long records | the shift along them |
 //! | [`fourier`] | a length | the plan of a Fourier transform |
 //! | [`coherence`] | simulated and measured signal | the linear dependence as a function of frequency |
+//! | [`welch`] | signal at a constant rate | power spectral density |
 //! | [`along`] | signal over an axis | derivative, integral, shifted signal |
 //! | [`moments`] | values of the members of a set | mean and scatter of any of them, from sums |
 //! | [`rank`] | pairs of values | rank correlation |
@@ -63,6 +64,7 @@ pub mod student;
 mod sum;
 pub mod synchronise;
 pub mod weighted;
+pub mod welch;
 pub mod window;
 
 /// A number for a message, with six significant digits to hide rounding of unit conversions.

@@ -5,11 +5,11 @@
 const IDIOMS: [(&[&str], &str); 13] = [
     (
         &["psd", "asd", "spectrum", "fft", "power_spectral_density"],
-        "a spectrum is a signal over frequency, not a number; for one band of it write `filter  band-pass 2 Hz to 4 Hz` and `value  rms`",
+        "the power spectral density of `ay` is `spectrum(ay, 4 s)`; take a number of it: `maximum of spectrum(ay, 4 s, 1 Hz, 10 Hz)`; the rms of a band is `filter  band-pass 2 Hz to 4 Hz` and `value  rms`",
     ),
     (
         &["db", "decibel"],
-        "a level in dB is a plain number: write `20 * log10(...)` as the value and its limit without unit",
+        "a level in dB is a plain number: write `20 * log10(...)`, of spectra `10 * log10(...)`, as the value and its limit without unit",
     ),
     (&["peak_to_peak", "peak2peak", "p2p", "ptp"], "write `range`: the largest minus the smallest"),
     (&["average", "avg"], "write `mean`"),

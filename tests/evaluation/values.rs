@@ -64,9 +64,22 @@ fn of_group<'a>(
 /// relative; see `cases/values/conditions.py`.
 #[test]
 fn conditions_on_samples_and_values_agree_with_numpy() {
-    let text = fs::read_to_string(root().join("tests/cases/values/conditions.fp")).expect("a text");
-    let found = certified(&compiled("conditions.fp", &text), &root().join("examples/coach"));
-    let expected = fs::read_to_string(root().join("tests/cases/values/conditions.json"));
+    let found = agreeing("conditions");
+    limits_follow_from_values(found.quantities.last().expect("a quantity"));
+}
+
+/// Numbers of spectra against SciPy, 1e-9 relative; see `cases/values/spectra.py`.
+#[test]
+fn numbers_of_spectra_agree_with_scipy() {
+    assert_eq!(agreeing("spectra").quantities.len(), 6);
+}
+
+/// The values of a protocol on examples/coach, after a comparison with the expected ones.
+fn agreeing(name: &str) -> Certification {
+    let of = |extension: &str| root().join(format!("tests/cases/values/{name}.{extension}"));
+    let text = fs::read_to_string(of("fp")).expect("a text");
+    let found = certified(&compiled(&format!("{name}.fp"), &text), &root().join("examples/coach"));
+    let expected = fs::read_to_string(of("json"));
     let expected: Value = serde_json::from_str(&expected.expect("expected numbers")).expect("JSON");
     let same = |want: &Value, got: f64, what: &str| {
         let want = want.as_f64().unwrap_or_else(|| panic!("{what}: {got}, and none expected"));
@@ -86,7 +99,7 @@ fn conditions_on_samples_and_values_agree_with_numpy() {
             }
         }
     }
-    limits_follow_from_values(found.quantities.last().expect("a quantity"));
+    found
 }
 
 /// The limits of single values, shares, counts and statistics of an expression, from the values.

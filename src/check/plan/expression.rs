@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::{Optional, Scalar, Side, Step};
 use crate::catalog::{Function, Reducer};
+use crate::metrics::welch::Density;
 use crate::source::{Located, Span};
 use crate::units::{Dimension, Unit, raised};
 
@@ -54,17 +55,25 @@ pub enum Type {
     /// One of these words; empty for a word by itself.
     Word(Vec<String>),
     Flag,
-    /// A number for each sample of a record.
+    /// A number for each sample.
     Samples {
         dimension: Dimension,
-        /// Whether the samples are those of the track record.
-        track: bool,
+        points: Points,
     },
-    /// Whether a condition holds, for each sample of a record.
+    /// Whether a condition holds, for each sample.
     SampleFlags {
-        /// As of samples.
-        track: bool,
+        points: Points,
     },
+}
+
+/// What samples are taken at; those at different points cannot be combined.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Points {
+    /// The samples of the simulated and measured records.
+    Record,
+    Track,
+    /// The frequencies of a spectrum.
+    Spectrum,
 }
 
 /// How an expression is computed.
@@ -101,6 +110,9 @@ pub enum Kind {
     Call(&'static Function, Vec<Expr>),
     Filtered(Box<Expr>, Vec<Step>),
     OverAxis(AxisOperation, Box<Expr>),
+    OfSection(SectionOperation, Box<Expr>),
+    /// The frequencies of the spectrum that it is combined with; not in a plan.
+    Frequency,
     /// The number of a section that is taken from a signal, the same all along: `Y - mean of Y`.
     Level(Reducer, Box<Expr>),
     /// The value of the first condition that holds, else the last value.
@@ -138,15 +150,24 @@ pub enum AxisOperation {
     },
 }
 
+/// What is computed of the samples of a section as a whole. It has samples of its own.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SectionOperation {
+    /// The power spectral density.
+    Spectrum(Density),
+    /// The frequencies of a spectrum.
+    Frequencies,
+}
+
 impl Expr {
     /// A number, not of samples.
     pub fn number(kind: Kind, dimension: Dimension, span: &Origin) -> Self {
         Self { kind, ty: Type::Number(dimension), span: span.clone() }
     }
 
-    /// A number for each sample of a record.
-    pub fn samples(kind: Kind, dimension: Dimension, track: bool, span: &Origin) -> Self {
-        Self { kind, ty: Type::Samples { dimension, track }, span: span.clone() }
+    /// A number for each sample.
+    pub fn samples(kind: Kind, dimension: Dimension, points: Points, span: &Origin) -> Self {
+        Self { kind, ty: Type::Samples { dimension, points }, span: span.clone() }
     }
 
     /// A comparison of two parts, or two conditions that are joined.
@@ -163,9 +184,25 @@ impl Expr {
         }
     }
 
+    /// What its samples are taken at; `None` where it has none.
+    pub fn points(&self) -> Option<Points> {
+        match self.ty {
+            Type::Samples { points, .. } | Type::SampleFlags { points } => Some(points),
+            Type::Number(_) | Type::Word(_) | Type::Flag => None,
+        }
+    }
+
     /// Whether its samples are those of the track record.
     pub fn track(&self) -> bool {
-        matches!(self.ty, Type::Samples { track: true, .. } | Type::SampleFlags { track: true })
+        self.points() == Some(Points::Track)
+    }
+
+    /// The dimension of what its samples lie along, where those of records lie along `axis`.
+    pub fn along(&self, axis: Dimension) -> Dimension {
+        match self.points() {
+            Some(Points::Spectrum) => Dimension::FREQUENCY,
+            Some(Points::Record | Points::Track) | None => axis,
+        }
     }
 
     /// Whether some of its samples may be missing: `Y when Q > 60 kN`.
@@ -183,7 +220,7 @@ impl Expr {
             | Kind::Filtered(inner, _)
             | Kind::Level(_, inner) => vec![inner],
             Kind::OverAxis(AxisOperation::Shifted(distance), inner) => vec![distance, inner],
-            Kind::OverAxis(_, inner) => vec![inner],
+            Kind::OverAxis(_, inner) | Kind::OfSection(_, inner) => vec![inner],
             Kind::Binary(_, left, right) => vec![left, right],
             Kind::Call(_, arguments) => arguments.iter().collect(),
             Kind::Cases(arms, otherwise) => {
@@ -191,6 +228,36 @@ impl Expr {
                 arms.chain(otherwise.as_deref()).collect()
             }
             _ => Vec::new(),
+        }
+    }
+
+    /// The same, to be changed.
+    fn parts_mut(&mut self) -> Vec<&mut Expr> {
+        match &mut self.kind {
+            Kind::Negative(inner)
+            | Kind::Not(inner)
+            | Kind::Mapped(inner, _)
+            | Kind::Filtered(inner, _)
+            | Kind::Level(_, inner)
+            | Kind::OfSection(_, inner) => vec![inner],
+            Kind::OverAxis(AxisOperation::Shifted(distance), inner) => vec![distance, inner],
+            Kind::OverAxis(_, inner) => vec![inner],
+            Kind::Binary(_, left, right) => vec![left, right],
+            Kind::Call(_, arguments) => arguments.iter_mut().collect(),
+            Kind::Cases(arms, otherwise) => {
+                let arms = arms.iter_mut().flat_map(|(value, condition)| [value, condition]);
+                arms.chain(otherwise.as_deref_mut()).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// Puts `other` in the place of the frequencies of a spectrum.
+    pub fn with_frequencies(&mut self, other: &Kind) {
+        if matches!(self.kind, Kind::Frequency) {
+            self.kind = other.clone();
+        } else {
+            self.parts_mut().into_iter().for_each(|part| part.with_frequencies(other));
         }
     }
 

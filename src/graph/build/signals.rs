@@ -4,7 +4,7 @@ use super::super::{NodeId, Operation};
 use super::Builder;
 use crate::check::evaluate::{shape, words};
 use crate::check::plan::{
-    AxisOperation, Expr, Kind, Mapping, Operator, Scalar, Step, StepSpec, Type,
+    AxisOperation, Expr, Kind, Mapping, Operator, Points, Scalar, Step, StepSpec, Type,
 };
 use crate::source::Span;
 
@@ -82,6 +82,12 @@ impl Builder {
                 steps.iter().fold(inner, |node, step| self.step(node, step))
             }
             Kind::OverAxis(operation, inner) => self.over_axis(operation, inner, signal),
+            Kind::OfSection(operation, inner) => {
+                let (_, input) = self.processed(inner, &[], from);
+                let kind = format!("{operation:?}");
+                let operation = Operation::OfSection(operation.clone());
+                self.add(operation, vec![input], dimension, from, words(signal), kind)
+            }
             Kind::Level(reducer, inner) => {
                 let (_, cut) = self.processed(inner, &[], from);
                 let cut = self.present(cut, inner);
@@ -239,6 +245,9 @@ impl Builder {
             node = self.step(node, step);
         }
         let filtered = node;
+        if signal.points() == Some(Points::Spectrum) {
+            return (filtered, node);
+        }
         // A window takes samples up to the ends of the section itself; all other steps work on the
         // samples cut out.
         if !matches!(chain.get(inside).map(|step| &step.kind), Some(StepSpec::Window { .. })) {

@@ -9,7 +9,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use super::signal::Signal;
 use crate::catalog::Reducer;
 use crate::check::evaluate::number;
-use crate::check::plan::{AxisOperation, Mapping, Operator, Plan, StepSpec};
+use crate::check::plan::{AxisOperation, Mapping, Operator, Plan, SectionOperation, StepSpec};
 use crate::graph::{Graph, Node, Operation};
 use crate::metrics::percentile::Method;
 use crate::run::sections::{Known, chosen};
@@ -34,6 +34,7 @@ enum Does {
     Step(Compared<StepSpec>),
     Cut(ExtentKey),
     Window(Compared<StepSpec>, ExtentKey),
+    OfSection(Compared<SectionOperation>),
     Reduce(Compared<Reducer>, Method),
 }
 
@@ -79,6 +80,7 @@ impl Does {
             Operation::Step(spec) => Self::Step(Compared(spec.clone())),
             Operation::Cut => Self::Cut(place),
             Operation::Window(spec) => Self::Window(Compared(spec.clone()), place),
+            Operation::OfSection(operation) => Self::OfSection(Compared(operation.clone())),
             Operation::Reduce(reducer) => {
                 Self::Reduce(Compared(*reducer), plan.sections.percentiles)
             }

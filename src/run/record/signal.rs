@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::catalog::InWindow;
 use crate::check::evaluate::number;
-use crate::check::plan::{AxisOperation, Mapping, Operator, StepSpec};
+use crate::check::plan::{AxisOperation, Mapping, Operator, SectionOperation, StepSpec};
 use crate::check::values::Values;
 use crate::metrics::filter::Filter;
 use crate::metrics::percentile::Method;
@@ -305,6 +305,22 @@ impl Samples {
                 Err(Reason::NotFiniteSample { row, at })
             }
         }
+    }
+
+    /// What is computed of the samples of a section as a whole, at points of its own.
+    pub fn of_section(&self, operation: &SectionOperation) -> Result<Self, Reason> {
+        let (frequencies, values) = match operation {
+            SectionOperation::Frequencies => return Ok(self.with(self.along.axis.to_vec())),
+            SectionOperation::Spectrum(density) => {
+                let Rate::PerTime(rate) = self.along.rate else {
+                    return Err(Reason::Internal);
+                };
+                density.of(&self.values, rate).map_err(Reason::method)?
+            }
+        };
+        let axis = Arc::new(frequencies);
+        let along = Along { axis, time: None, rate: self.along.rate, first_row: None };
+        Ok(Self { along: Arc::new(along), values: Arc::new(values) })
     }
 
     fn window_axis(&self, over_time: bool, extent: Extent) -> Result<(&[f64], Extent), Reason> {

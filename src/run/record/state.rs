@@ -239,7 +239,11 @@ impl State<'_> {
     fn asks(&self, id: NodeId) -> bool {
         matches!(
             self.graph.nodes[id].operation,
-            Operation::Step(_) | Operation::Window(_) | Operation::OverAxis(_) | Operation::Present
+            Operation::Step(_)
+                | Operation::Window(_)
+                | Operation::OverAxis(_)
+                | Operation::OfSection(_)
+                | Operation::Present
         )
     }
 
@@ -424,6 +428,9 @@ impl State<'_> {
             Operation::OverAxis(operation) => Ok(Signal::Samples(
                 self.samples(node.inputs[0])?.over_axis(operation, self.known, self.extent)?,
             )),
+            Operation::OfSection(operation) => {
+                Ok(Signal::Samples(self.samples(node.inputs[0])?.of_section(operation)?))
+            }
             Operation::Step(spec) => {
                 Ok(Signal::Samples(self.samples(node.inputs[0])?.stepped(spec)?))
             }

@@ -278,6 +278,10 @@ impl Both<'_> {
                 }
                 Signal::Constant(_) => Err(Reason::NoSamplesOfConstant),
             },
+            Kind::OfSection(operation, signal) => match inner(signal)? {
+                Signal::Samples(samples) => Ok(Signal::Samples(samples.of_section(operation)?)),
+                Signal::Constant(_) => Err(Reason::NoSamplesOfConstant),
+            },
             Kind::Level(reducer, signal) => {
                 Ok(Signal::Constant(number_of(*reducer, &common.filled(inner(signal)?), method)?))
             }
