@@ -77,7 +77,7 @@ pub const FUNCTIONS: &[Function] = &[
 ];
 
 /// Functions of a signal along its axis: name, arguments and result, description.
-pub const SIGNAL_FUNCTIONS: [(&str, &str, &str); 4] = [
+pub const SIGNAL_FUNCTIONS: [(&str, &str, &str); 5] = [
     (
         "shifted",
         "(signal<D>, distance along the axis) -> signal<D>",
@@ -97,5 +97,10 @@ pub const SIGNAL_FUNCTIONS: [(&str, &str, &str); 4] = [
         "spectrum",
         "(signal<D>, segment: a time, overlap: a share, from: a frequency, to: a frequency) -> spectrum<D^2 per frequency>",
         "Power spectral density of the section, one-sided, by Welch's method: Hann windows of this length, each without its mean. The overlap (50 % unless said) and the band may be left out.",
+    ),
+    (
+        "cycle_ranges",
+        "(signal<D>) -> cycles<D>",
+        "Ranges of the cycles of the section by rainflow counting (ASTM E1049-85, 5.4.4); a half cycle counts half.",
     ),
 ];

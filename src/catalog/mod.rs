@@ -16,7 +16,7 @@ pub use forms::{Choice, Form, FormPart, NumberOption};
 pub use functions::{FUNCTIONS, Function, SIGNAL_FUNCTIONS, Signature};
 pub use reducers::{
     CROSSINGS, InWindow, LONGEST_RUN, REDUCERS, Reducer, ReducerEntry, SHARE_OF_SAMPLES,
-    STATISTICS, Statistic, StatisticEntry,
+    STATISTICS, Statistic, StatisticEntry, TOTAL,
 };
 pub use steps::{STEPS, StepEntry, StepKind};
 pub use two_signals::{Asked, Best, METRICS, Metric, MetricEntry, NOT_CHECKED, Pair};

@@ -201,6 +201,12 @@ pub static CROSSINGS: ReducerEntry = share!(
     |x: &Traits<'_>| sampling::onsets(x)
 );
 
+/// `total of`, and the number of those that satisfy a condition, over cycles: of half cycles.
+pub static TOTAL: ReducerEntry =
+    same("total", "Sum over the cycles, a half cycle counting half.", |_, x| {
+        Some(x.iter().sum::<f64>() / 2.0)
+    });
+
 /// `longest run where Q < 10 kN`: from the first to the last sample of the longest run.
 pub static LONGEST_RUN: ReducerEntry = ReducerEntry {
     name: "longest run where",
@@ -228,6 +234,14 @@ impl Reducer {
             Self::Percentile(_) => signal,
             Self::Named(entry) => (entry.gives)(signal, axis),
         }
+    }
+
+    /// Whether the order of the samples, or their number, does not matter: cycles have such values.
+    pub fn of_cycles(self) -> bool {
+        let Self::Named(entry) = self else { return true };
+        const OTHERS: [&str; 4] = ["rms_about_trend", "slope", "first", "last"];
+        entry.window.is_some() && !OTHERS.contains(&entry.name)
+            || [TOTAL.name, SHARE_OF_SAMPLES.name].contains(&entry.name)
     }
 
     /// `None` where the value is not defined, such as for no samples or the slope of one sample.

@@ -1,7 +1,7 @@
 //! One walk over phrases that gives typed expressions: of numbers, words and conditions, of values of
 //! a group, and of samples. Where an expression stands decides which names it can use ([`Scope`]).
 
-use super::evaluate::{evaluate, number};
+use super::evaluate::{evaluate, number, shape};
 use super::functions::{function, is_signal_function};
 use super::prelude::*;
 use super::values::Nothing;
@@ -33,6 +33,7 @@ impl Points {
             Self::Record => "samples of a record",
             Self::Track => "samples of the track record",
             Self::Spectrum => "lines of a spectrum",
+            Self::Cycles => "cycles",
         }
     }
 }
@@ -339,12 +340,22 @@ impl Checker<'_> {
     pub fn record_of(&mut self, parts: &[&Expr]) -> Option<Option<Points>> {
         let mut sampled = parts.iter().filter_map(|part| Some((part, part.points()?)));
         let Some((first, points)) = sampled.next() else { return Some(None) };
-        let Some((other, others)) = sampled.find(|(_, others)| *others != points) else {
+        let cycles = cycles_of(first);
+        let unlike = |other: &Expr| points == Points::Cycles && cycles_of(other) != cycles;
+        let Some((other, others)) =
+            sampled.find(|(other, others)| *others != points || unlike(other))
+        else {
             return Some(Some(points));
         };
-        if points == Points::Spectrum || others == Points::Spectrum {
-            let says = "the lines of a spectrum and the samples of a record cannot be combined";
-            let help = "take a number of the samples, `mean of Y`, or the spectrum of the whole, `spectrum(Y - Q, 4 s)`";
+        if points.of_section() || others.of_section() {
+            let (a, b) = (points.in_words(), others.in_words());
+            let says = if points == others {
+                "cycles of two signals cannot be combined".to_owned()
+            } else {
+                format!("{a} and {b} cannot be combined")
+            };
+            let help =
+                "take a number of one, `mean of Y`, or say it of the whole, `spectrum(Y - Q, 4 s)`";
             let problem = error("mixed-records", says, &other.span).help(help);
             return self.refuse(problem.also(&first.span, points.in_words()));
         }
@@ -440,6 +451,12 @@ pub fn unlike(done: &str, left: &Expr, right: &Expr) -> Problem {
         .label(b)
         .also(&left.span, a)
         .help_if(meant(right, left).or_else(|| meant(left, right)))
+}
+
+/// The signal that cycles are of.
+fn cycles_of(expr: &Expr) -> Option<String> {
+    expr.find(&|part| matches!(part.kind, Kind::OfSection(SectionOperation::CycleRanges, _)))
+        .map(shape)
 }
 
 /// Whether a percentile by a constant is taken of something: `percentile level of Q`.

@@ -423,6 +423,7 @@ impl Checker<'_> {
         let signal = self.expr(signal, &mut samples)?;
         let signal = self.at_frequencies(signal)?;
         self.only_both(&signal)?;
+        self.suits_points(reducer, &signal, span)?;
         let dimension = reducer.gives(signal.dimension(), signal.along(axis));
         let own = Input::own(Taken::OfBoth(reducer), InputSide::Own, span);
         Some(scope.input(Input { signal: Some(signal), ..own }, dimension, span))

@@ -5,7 +5,9 @@ use super::functions::or_idiom;
 use super::prelude::*;
 use super::scope::Reduce;
 use super::steps::after;
-use crate::catalog::{DIFFERENCES, METRICS, MetricEntry, REDUCERS, Reducer, STATISTICS, Statistic};
+use crate::catalog::{
+    DIFFERENCES, METRICS, MetricEntry, REDUCERS, Reducer, STATISTICS, Statistic, TOTAL,
+};
 use crate::source::Source;
 use crate::syntax::idiom;
 
@@ -66,6 +68,7 @@ impl Checker<'_> {
         let reducer = &self.with_percentile(reducer)?;
         let found = match &reducer.node {
             Node::Percentile(percent) => Some(Reducer::Percentile(*percent)),
+            Node::Path(name) if name == TOTAL.name => Some(Reducer::Named(&TOTAL)),
             Node::Path(name) => Reducer::named(name),
             _ => None,
         };
@@ -128,6 +131,7 @@ impl Checker<'_> {
         let signal = self.expr(signal, &mut Scope { may_miss, ..Scope::samples(at, None) });
         let over = if_written(over.map(|over| self.slope_axis(found, over, reducer, at)))?;
         let signal = self.at_frequencies(signal?)?;
+        self.suits_points(found, &signal, span)?;
         if over.is_some() || !chain.is_empty() {
             self.of_record(&signal, span)?;
         }

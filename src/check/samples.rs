@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::prelude::*;
 use super::scope::Reduce;
-use crate::catalog::{CROSSINGS, LONGEST_RUN, Reducer, SHARE_OF_SAMPLES};
+use crate::catalog::{CROSSINGS, LONGEST_RUN, Reducer, SHARE_OF_SAMPLES, TOTAL};
 use crate::syntax::phrase::Counted;
 
 /// What a name in a phrase is; `None` if it is looked for in the parts of the phrase.
@@ -123,6 +123,7 @@ impl Checker<'_> {
         if over.is_some() {
             self.of_record(&condition, span)?;
         }
+        self.suits_points(taken, &condition, span)?;
         let along = over.as_ref().map_or(condition.along(axis), Expr::dimension);
         let dimension = taken.gives(Dimension::ONE, along);
         let input = if of_both {
@@ -143,11 +144,7 @@ impl Checker<'_> {
     ) -> Option<(Reducer, Option<Expr>)> {
         match counted {
             Counted::Share => Some((Reducer::Named(&SHARE_OF_SAMPLES), None)),
-            Counted::Count => self.refuse(
-                error("count-of-samples", "the number of samples depends on the rate", span).help(
-                    "write `share where ...`, `longest run where ...` or `crossings where ...`",
-                ),
-            ),
+            Counted::Count => Some((Reducer::Named(&TOTAL), None)),
             Counted::Crossings => Some((Reducer::Named(&CROSSINGS), None)),
             Counted::LongestRun { in_time: true } if axis != Dimension::TIME => {
                 let Some(time) = self.time.clone() else {

@@ -47,6 +47,9 @@ impl Checker<'_> {
         if name.node == "spectrum" {
             return self.spectrum(name, arguments, span, scope);
         }
+        if name.node == "cycle_ranges" {
+            return self.cycle_ranges(name, arguments, span, scope);
+        }
         let shifted = name.node == "shifted";
         let (of, second) = match arguments {
             [of] if !shifted => (of, None),
@@ -125,6 +128,7 @@ impl Checker<'_> {
         scope.may_miss = true;
         let of = self.expr(of, scope)?;
         let of = self.at_frequencies(of)?;
+        self.suits_points(reducer, &of, &span)?;
         let dimension = reducer.gives(of.dimension(), of.along(self.axis_dimension()));
         let points = of.points().unwrap_or(Points::Record);
         Some(Expr::samples(Kind::Level(reducer, Box::new(of)), dimension, points, &span))

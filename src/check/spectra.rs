@@ -1,6 +1,8 @@
-//! Checks spectra: `spectrum(ay, 4 s)`, and `frequency` among their lines.
+//! Checks signals with points of their own: `spectrum(ay, 4 s)`, with `frequency` among its lines, and
+//! `cycle_ranges(Q)`.
 
 use super::prelude::*;
+use crate::catalog::{Reducer, TOTAL};
 use crate::metrics::welch::Density;
 
 /// Overlap of the segments, unless one is stated: the usual one of Hann windows.
@@ -52,6 +54,50 @@ impl Checker<'_> {
         let of = signal.dimension();
         let kind = Kind::OfSection(SectionOperation::Spectrum(density), Box::new(signal));
         Some(Expr::samples(kind, of * of / Dimension::FREQUENCY, Points::Spectrum, &span))
+    }
+
+    /// `cycle_ranges(Q)`.
+    pub fn cycle_ranges(
+        &mut self,
+        name: &At<String>,
+        arguments: &[Phrase],
+        span: Origin,
+        scope: &mut Scope,
+    ) -> Option<Expr> {
+        let [of] = arguments else {
+            let says = "`cycle_ranges` needs one signal";
+            return self.refuse(error("arguments", says, name).help("`cycle_ranges(Q)`"));
+        };
+        let signal = self.expr(of, scope)?;
+        if signal.points().is_none() {
+            let says = "a number has no cycles: it is the same all along";
+            return self.refuse(error("arguments", says, &signal));
+        }
+        self.of_record(&signal, &span)?;
+        let dimension = signal.dimension();
+        let kind = Kind::OfSection(SectionOperation::CycleRanges, Box::new(signal));
+        Some(Expr::samples(kind, dimension, Points::Cycles, &span))
+    }
+
+    /// Whether a number can be taken of samples: of cycles none that depends on their order, and the
+    /// total of cycles alone.
+    pub fn suits_points(&mut self, reducer: Reducer, of: &Expr, at: &Origin) -> Option<()> {
+        let cycles = of.points() == Some(Points::Cycles);
+        let problem = match reducer {
+            Reducer::Named(entry) if !cycles && *entry == TOTAL => {
+                error("count-of-samples", "the number of samples depends on the rate", at).help(
+                    "write `share where ...`, `longest run where ...`, `crossings where ...` or `mean of ...`; cycles have a number and a total: `count where cycle_ranges(Q) > 10 kN`",
+                )
+            }
+            _ if cycles && !reducer.of_cycles() => {
+                let says = "cycles have no order along the record";
+                error("order-of-cycles", says, at).help(
+                    "of cycles there are `total`, `mean`, `rms`, `std`, `maximum`, percentiles and the like, `share where` and `count where`",
+                )
+            }
+            _ => return Some(()),
+        };
+        self.refuse(problem)
     }
 
     /// A constant above zero.
@@ -117,13 +163,21 @@ impl Checker<'_> {
     /// What samples of a record are taken at; a spectrum is refused where it is used.
     pub fn of_record(&mut self, expr: &Expr, used: &Span) -> Option<Points> {
         match expr.points() {
-            Some(Points::Spectrum) => {
-                let says =
-                    "this needs a signal along the record, and a spectrum is one over frequency";
-                let help = "filter the signal before: `spectrum(ay through LP20, 4 s)`; a quantity is `of` the signal, and its `value` of the spectrum: `maximum of spectrum(ay, 4 s)`";
-                self.refuse(
-                    error("not-along-record", says, used).also(expr, "a spectrum").help(help),
-                )
+            Some(points) if points.of_section() => {
+                let (says, what, help) = if points == Points::Spectrum {
+                    (
+                        "this needs a signal along the record, and a spectrum is one over frequency",
+                        "a spectrum",
+                        "filter the signal before: `spectrum(ay through LP20, 4 s)`; a quantity is `of` the signal, and its `value` of the spectrum: `maximum of spectrum(ay, 4 s)`",
+                    )
+                } else {
+                    (
+                        "this needs a signal along the record, and cycles are not along it",
+                        "cycles",
+                        "filter the signal before: `cycle_ranges(Q through LP20)`; a quantity is `of` the signal, and its `value` of the cycles: `total of cycle_ranges(Q)^5`",
+                    )
+                };
+                self.refuse(error("not-along-record", says, used).also(expr, what).help(help))
             }
             points => Some(points.unwrap_or(Points::Record)),
         }

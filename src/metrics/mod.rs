@@ -27,6 +27,7 @@
 //! | [`fourier`] | a length | the plan of a Fourier transform |
 //! | [`coherence`] | simulated and measured signal | the linear dependence as a function of frequency |
 //! | [`welch`] | signal at a constant rate | power spectral density |
+//! | [`rainflow`] | signal | the ranges of its half cycles |
 //! | [`along`] | signal over an axis | derivative, integral, shifted signal |
 //! | [`moments`] | values of the members of a set | mean and scatter of any of them, from sums |
 //! | [`rank`] | pairs of values | rank correlation |
@@ -49,6 +50,7 @@ pub mod moments;
 pub mod normal;
 pub mod pair;
 pub mod percentile;
+pub mod rainflow;
 pub mod random;
 pub mod random_effects;
 pub mod rank;

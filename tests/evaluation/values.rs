@@ -74,6 +74,12 @@ fn numbers_of_spectra_agree_with_scipy() {
     assert_eq!(agreeing("spectra").quantities.len(), 6);
 }
 
+/// Numbers of cycles against another way of counting, 1e-9 relative; see `cases/values/cycles.py`.
+#[test]
+fn numbers_of_cycles_agree_with_another_count() {
+    assert_eq!(agreeing("cycles").quantities.len(), 4);
+}
+
 /// The values of a protocol on examples/coach, after a comparison with the expected ones.
 fn agreeing(name: &str) -> Certification {
     let of = |extension: &str| root().join(format!("tests/cases/values/{name}.{extension}"));

@@ -74,6 +74,15 @@ pub enum Points {
     Track,
     /// The frequencies of a spectrum.
     Spectrum,
+    /// The half cycles of a signal, in the order in which they are counted.
+    Cycles,
+}
+
+impl Points {
+    /// Whether they are not those of a record.
+    pub fn of_section(self) -> bool {
+        matches!(self, Self::Spectrum | Self::Cycles)
+    }
 }
 
 /// How an expression is computed.
@@ -157,6 +166,8 @@ pub enum SectionOperation {
     Spectrum(Density),
     /// The frequencies of a spectrum.
     Frequencies,
+    /// The ranges of the half cycles.
+    CycleRanges,
 }
 
 impl Expr {
@@ -201,6 +212,7 @@ impl Expr {
     pub fn along(&self, axis: Dimension) -> Dimension {
         match self.points() {
             Some(Points::Spectrum) => Dimension::FREQUENCY,
+            Some(Points::Cycles) => Dimension::ONE,
             Some(Points::Record | Points::Track) | None => axis,
         }
     }

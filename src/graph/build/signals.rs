@@ -245,7 +245,7 @@ impl Builder {
             node = self.step(node, step);
         }
         let filtered = node;
-        if signal.points() == Some(Points::Spectrum) {
+        if signal.points().is_some_and(Points::of_section) {
             return (filtered, node);
         }
         // A window takes samples up to the ends of the section itself; all other steps work on the

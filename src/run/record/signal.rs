@@ -9,6 +9,7 @@ use crate::check::plan::{AxisOperation, Mapping, Operator, SectionOperation, Ste
 use crate::check::values::Values;
 use crate::metrics::filter::Filter;
 use crate::metrics::percentile::Method;
+use crate::metrics::rainflow::half_cycles;
 use crate::metrics::sampling::Traits;
 use crate::metrics::window::{Kind, Sliding};
 use crate::metrics::{along, resample};
@@ -309,7 +310,7 @@ impl Samples {
 
     /// What is computed of the samples of a section as a whole, at points of its own.
     pub fn of_section(&self, operation: &SectionOperation) -> Result<Self, Reason> {
-        let (frequencies, values) = match operation {
+        let (axis, values) = match operation {
             SectionOperation::Frequencies => return Ok(self.with(self.along.axis.to_vec())),
             SectionOperation::Spectrum(density) => {
                 let Rate::PerTime(rate) = self.along.rate else {
@@ -317,8 +318,12 @@ impl Samples {
                 };
                 density.of(&self.values, rate).map_err(Reason::method)?
             }
+            SectionOperation::CycleRanges => {
+                let ranges = half_cycles(&self.values);
+                ((1..=ranges.len()).map(|number| number as f64).collect(), ranges)
+            }
         };
-        let axis = Arc::new(frequencies);
+        let axis = Arc::new(axis);
         let along = Along { axis, time: None, rate: self.along.rate, first_row: None };
         Ok(Self { along: Arc::new(along), values: Arc::new(values) })
     }
