@@ -24,6 +24,7 @@ pub mod deliver;
 pub mod diagnose;
 pub mod disk;
 pub mod effects;
+pub mod exercise;
 pub mod foreign;
 pub mod graph;
 pub mod hash;

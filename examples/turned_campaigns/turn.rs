@@ -40,7 +40,7 @@ pub fn campaign(out: &Path, base: &Base, case: &Case, catalogue: &Catalogue) -> 
         (text("measurement"), text("simulation"), text("vehicle"));
 
     let mut files = vec![("campaign.yaml".to_string(), campaign.source.text.clone().into_bytes())];
-    files.extend(campaign.other_files(RecordKind::Simulation).map_err(|problem| problem.says)?);
+    files.extend(campaign.other_files(&[RecordKind::Simulation]).map_err(|problem| problem.says)?);
     files.retain(|(inside, _)| !inside.starts_with(&format!("{measurement}/")));
     for (inside, bytes) in &mut files {
         if *inside == vehicle {

@@ -326,7 +326,7 @@ fn simulating<'a>(
 /// The cache in a folder, keyed by everything the simulations depend on.
 fn kept(folder: &Path, campaign: &Campaign) -> Result<Cache, Problem> {
     let files: Vec<String> = campaign
-        .other_files(RecordKind::Measurement)?
+        .other_files(&[RecordKind::Measurement])?
         .iter()
         .map(|(path, bytes)| format!("{path} {}", sha256(bytes)))
         .collect();

@@ -6,6 +6,7 @@ mod compare;
 mod convert_records;
 mod diagnose;
 mod effects;
+mod exercise;
 mod explain;
 mod impact;
 mod import;
@@ -128,6 +129,12 @@ enum Command {
         after_help = "Examples:\n  fishplate impact en14363-2016-annex-t en14363-2016-annex-t-strict-acceleration --over examples/coach examples/coach-good --out target/impact\n  fishplate reduce examples/coach --out target/coach-values.parquet\n  fishplate impact en14363-2016-annex-t my-proposal.fp --over target/coach-values.parquet --out target/impact"
     )]
     Impact(impact::Impact),
+    /// Write, for each limit of a protocol, two campaigns that meet and exceed it by less than
+    /// 0.1 % and differ in nothing else.
+    #[command(
+        after_help = "Example:\n  fishplate exercise en14363-2016-annex-t --from examples/coach-good --out target/exercise"
+    )]
+    Exercise(exercise::Exercise),
     /// Simulate one section or a whole campaign, with the reference vehicle model or another
     /// simulator; effects can be added.
     #[command(
@@ -291,6 +298,7 @@ pub fn run_with(words: impl IntoIterator<Item = OsString>) -> Exit {
         Command::Study { study } => study.run(&console),
         Command::Compare(compare) => compare.run(&console),
         Command::Impact(impact) => impact.run(&console),
+        Command::Exercise(exercise) => exercise.run(&console),
         Command::Simulate(simulate) => simulate.run(&console),
         Command::Diagnose(diagnose) => diagnose.run(&console),
         Command::Import(import) => import.run(&console),

@@ -11,6 +11,7 @@ pub const REPORT: &[&str] = &[
     "results.json",
     "study.json",
     "diagnosis.json",
+    "exercise.json",
     "impact.json",
     "blind.json",
     "blind.html",

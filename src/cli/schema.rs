@@ -7,6 +7,7 @@ use super::output::{Console, Done};
 use crate::result::blind::Blind;
 use crate::result::comparison::Comparison;
 use crate::result::diagnosis::Diagnosis;
+use crate::result::exercise::Exercise;
 use crate::result::impact::Impact;
 use crate::result::study::Study;
 use crate::result::{self, Certification};
@@ -23,6 +24,8 @@ pub enum Of {
     Study,
     /// comparison.json
     Comparison,
+    /// exercise.json
+    Exercise,
     /// impact.json
     Impact,
     /// diagnosis.json
@@ -38,6 +41,7 @@ pub fn schema(of: Of) -> serde_json::Value {
         Of::Results => of_file::<Certification>(),
         Of::Study => of_file::<Study>(),
         Of::Comparison => of_file::<Comparison>(),
+        Of::Exercise => of_file::<Exercise>(),
         Of::Impact => of_file::<Impact>(),
         Of::Diagnosis => of_file::<Diagnosis>(),
         Of::Blind => of_file::<Blind>(),

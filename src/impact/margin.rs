@@ -7,7 +7,7 @@ use crate::certify::Compiled;
 use crate::check::diff;
 use crate::check::plan::{Expr, Kind, LimitName, Plan, Quantity, Scalar, Type};
 use crate::result::impact::Margin;
-use crate::result::{Direction, Outcome, QuantityResult, StatisticResult};
+use crate::result::{Direction, EdgeResult, Outcome, QuantityResult, RulePlace, StatisticResult};
 use crate::run::{Evaluated, Given, Judged, overall};
 use crate::source::Span;
 use crate::units::Dimension;
@@ -21,7 +21,7 @@ const BEYOND: f64 = 1e-9;
 pub struct Written {
     pub rule: String,
     pub changed: bool,
-    quantity: usize,
+    pub quantity: usize,
     span: Span,
     /// Of a limit between two edges, which of them.
     edge: Option<Direction>,
@@ -57,6 +57,24 @@ pub fn limits(compiled: &Compiled, changed: impl Fn(&Span) -> Option<String>) ->
     found
 }
 
+impl Written {
+    /// Where the protocol states it.
+    pub fn place(&self) -> RulePlace {
+        RulePlace { file: self.span.source.file_name().to_string(), line: self.span.line() }
+    }
+
+    /// What is judged by it.
+    pub fn rows<'a>(
+        &'a self,
+        quantities: &'a [QuantityResult],
+    ) -> impl Iterator<Item = (&'a StatisticResult, EdgeResult)> {
+        let place = self.place();
+        let rows = quantities[self.quantity].statistics.iter().filter(move |one| one.rule == place);
+        let edges = rows.flat_map(|one| one.compared().into_iter().map(move |edge| (one, edge)));
+        edges.filter(|(_, edge)| self.edge.is_none_or(|of| of == edge.direction))
+    }
+}
+
 pub fn same_place(a: &Span, b: &Span) -> bool {
     (a.start, a.end) == (b.start, b.end) && a.source.name == b.source.name && a.text() == b.text()
 }
@@ -79,16 +97,11 @@ impl Found<'_> {
     pub fn margin(&self, limit: &Written) -> Option<Margin> {
         let result = &self.judged.quantities[limit.quantity];
         let now = decided(self.plan, self.judged);
-        let (file, line) = (limit.span.source.file_name(), limit.span.line());
-        let in_force =
-            result.statistics.iter().filter(|one| one.rule.line == line && one.rule.file == file);
         // Of several groups, the limit of the one that is nearest to it.
         let distance = |ratio: Option<f64>| ratio.map_or(f64::INFINITY, |ratio| ratio.ln().abs());
+        let in_force = limit.rows(&self.judged.quantities);
         let limits =
-            in_force.flat_map(|one| one.compared().into_iter().map(move |edge| (one, edge)));
-        let limits = limits.filter(|(_, edge)| limit.edge.is_none_or(|of| of == edge.direction));
-        let limits =
-            limits.filter_map(|(one, edge)| Some((edge.limit?, &one.unit, edge.normalised)));
+            in_force.filter_map(|(one, edge)| Some((edge.limit?, &one.unit, edge.normalised)));
         let (value, unit, _) = limits.min_by(|a, b| distance(a.2).total_cmp(&distance(b.2)))?;
         let mut factors: Vec<f64> = result
             .statistics

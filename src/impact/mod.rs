@@ -47,7 +47,7 @@ use crate::result::{FORMAT, Outcome, Reason, THIS};
 use crate::run::{self, Evaluated, Progress};
 use crate::source::Span;
 use crate::values::Joined;
-use margin::Written;
+pub use margin::{Written, limits};
 use minimal::minimal;
 use shares::Groups;
 use source::{From, Source};

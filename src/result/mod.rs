@@ -9,6 +9,7 @@ pub mod confirmation;
 pub mod diagnosis;
 mod direction;
 pub mod domain;
+pub mod exercise;
 pub mod finding;
 pub mod found;
 pub mod impact;

@@ -31,7 +31,8 @@ mod values;
 mod verdict;
 
 pub use campaign::{
-    Outcome, Reduced, Settings, evaluate, evaluated, hold, judge, reduce, run, several, single,
+    Outcome, Reduced, Settings, again, evaluate, evaluated, hold, judge, reduce, run, several,
+    single,
 };
 pub use check_data::check_data;
 pub use data_rules::consequence::consequence;

@@ -152,30 +152,40 @@ fn axes(signals: &Signals) -> Vec<(&'static str, Unit, Vec<f64>)> {
     vec![(TIME, second, time), (AXIS, metre, signals.axis.clone())]
 }
 
-/// A record in memory, with the columns that [`record_file`] writes. Nothing is rounded.
+/// The columns that [`record_file`] writes, with their headings. Nothing is rounded.
 ///
 /// # Errors
 /// A value is not finite, which is a fault of the simulator.
-pub fn frame(
+pub fn columns(
     name: &str,
     signals: &Signals,
     units: &dyn Fn(&str) -> Unit,
-) -> Result<Frame, Problem> {
+) -> Result<Vec<(String, Vec<f64>)>, Problem> {
     let heading = |name: &str, unit: &Unit| format!("{name} [{unit}]");
     let axes = axes(signals).into_iter().map(|(name, unit, values)| (heading(name, &unit), values));
     let channels = signals.channels.iter();
     let channels =
         channels.map(|Channel { name, values }| (heading(name, &units(name)), values.clone()));
     let columns: Vec<(String, Vec<f64>)> = axes.chain(channels).collect();
-    if let Some((column, _)) =
-        columns.iter().find(|(_, values)| values.iter().any(|value| !value.is_finite()))
-    {
-        return Err(Problem::error(
+    match columns.iter().find(|(_, values)| values.iter().any(|value| !value.is_finite())) {
+        None => Ok(columns),
+        Some((column, _)) => Err(Problem::error(
             "not-finite",
             format!("`{column}` of `{name}` has a value that is not finite"),
-        ));
+        )),
     }
-    let arrays = columns
+}
+
+/// A record in memory, with the [`columns`] of its signals.
+///
+/// # Errors
+/// As [`columns`].
+pub fn frame(
+    name: &str,
+    signals: &Signals,
+    units: &dyn Fn(&str) -> Unit,
+) -> Result<Frame, Problem> {
+    let arrays = columns(name, signals, units)?
         .into_iter()
         .map(|(name, values)| (name, Arc::new(Float64Array::from(values)) as ArrayRef));
     let batch = RecordBatch::try_from_iter(arrays)

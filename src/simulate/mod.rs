@@ -16,7 +16,9 @@ mod write;
 
 pub use add::{Plan, check_confined, incremented, interpolated, simulate};
 pub use builtin::{Builtin, model_parameters, number_of, single};
-pub use campaign::{Units, in_units, record_file, recorded, recorded_inside, signals_of};
+pub use campaign::{
+    Units, columns, frame, in_units, record_file, recorded, recorded_inside, signals_of,
+};
 pub use compare::{Deviation, baseline_warning, deviations};
 pub use external::{Cache, External, Program, read_program};
 pub use function::{Call, Function};

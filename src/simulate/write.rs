@@ -64,7 +64,7 @@ pub fn write_campaign(
     for (name, bytes) in records {
         outputs.add(&format!("{FOLDER}/{}.{}", name.as_ref(), format.ending()), &bytes)?;
     }
-    let copied = campaign.other_files(RecordKind::Simulation)?;
+    let copied = campaign.other_files(&[RecordKind::Simulation])?;
     let mut name = campaign.name.clone();
     let mut origin = None;
     if let Some(made) = made {

@@ -9,6 +9,7 @@ mod common {
 }
 
 mod compare;
+mod exercise;
 mod impact;
 mod margin;
 mod study;

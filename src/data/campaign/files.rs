@@ -67,14 +67,15 @@ impl Campaign {
         self.with_bytes(self.read_files().chain(self.named_files()?))
     }
 
-    /// Every file that the campaign names but its `campaign.yaml` and the records of one kind, with
+    /// Every file that the campaign names but its `campaign.yaml` and the records of some kinds, with
     /// its path inside and its bytes: what a copy of the campaign needs.
     ///
     /// # Errors
     /// A file cannot be read, or lies outside.
-    pub fn other_files(&self, but: RecordKind) -> Result<Vec<(String, Vec<u8>)>, Problem> {
+    pub fn other_files(&self, but: &[RecordKind]) -> Result<Vec<(String, Vec<u8>)>, Problem> {
         let mut records = Vec::new();
-        let others = RecordKind::ALL.into_iter().filter(|kind| *kind != but && self.has(*kind));
+        let others =
+            RecordKind::ALL.into_iter().filter(|kind| !but.contains(kind) && self.has(*kind));
         for which in others.flat_map(|kind| self.records(kind)) {
             for name in &self.names {
                 records.push(self.place_of(which, name)?.inside);

@@ -5,7 +5,7 @@ pub mod several;
 pub mod single;
 
 use crate::check::plan::Plan;
-use crate::data::Campaigns;
+use crate::data::{Campaign, Campaigns};
 use crate::graph::Graph;
 use crate::problem::{Problem, Problems};
 use crate::result::study::Reduction;
@@ -62,6 +62,35 @@ pub fn run<'a>(
     let prepared = Prepared::new(plan, graph, campaigns.into())?;
     let sections = prepared.sections(Shard::WHOLE, progress);
     judge(plan, graph, (&prepared.basis, sections), (settings, &Signals::Of(&prepared.work())))
+}
+
+/// As [`run`], without traces, where the values of some sections are known: those that are neither
+/// changed nor repeat a changed one. Also returns the values of all sections.
+///
+/// # Errors
+/// As [`run`].
+pub fn again(
+    plan: &Plan,
+    graph: &Graph,
+    campaign: &Campaign,
+    known: &[Numbered],
+    changed: &dyn Fn(&str) -> bool,
+) -> Result<(Vec<Numbered>, Outcome), Problems> {
+    let prepared = Prepared::new(plan, graph, campaign.into())?;
+    let units = &prepared.basis.units;
+    let same = |number: usize| {
+        let changed = |number: usize| changed(&units[number].name);
+        !changed(number) && !units[number].original.is_some_and(changed)
+    };
+    let known: Vec<&Numbered> = known.iter().filter(|(number, _)| same(*number)).collect();
+    let is_known = |number: &usize| known.iter().any(|(known, _)| known == number);
+    let others = (0..units.len()).filter(|number| !is_known(number));
+    let mut sections = prepared.numbered(others, &|_| {});
+    sections.extend(known.into_iter().cloned());
+    let settings = Settings { traces: 0 };
+    let of = (&prepared.basis, sections.clone());
+    let outcome = judge(plan, graph, of, (settings, &Signals::Of(&prepared.work())))?;
+    Ok((sections, outcome))
 }
 
 /// Judges the values of sections. Sections without values are missing, and the verdict is then not

@@ -201,10 +201,19 @@ pub type Numbered = (usize, SectionValues);
 impl Prepared<'_> {
     /// The values of the sections of a shard, in the order of the sections.
     pub fn sections(&self, shard: Shard, progress: Progress<'_>) -> Vec<Numbered> {
+        self.numbered(shard.range(self.basis.units.len()), progress)
+    }
+
+    /// The values of some sections, by their numbers.
+    pub fn numbered(
+        &self,
+        sections: impl Iterator<Item = usize>,
+        progress: Progress<'_>,
+    ) -> Vec<Numbered> {
         let of_section = |(number, mut values): (usize, Vec<SectionValues>)| {
             (number, values.pop().unwrap_or_default())
         };
-        self.shifted(shard, &Shifts::NONE, progress).into_iter().map(of_section).collect()
+        self.some(sections, &Shifts::NONE, progress).into_iter().map(of_section).collect()
     }
 
     /// The same with one value for each shift.
@@ -214,10 +223,17 @@ impl Prepared<'_> {
         shifts: &Shifts<'_>,
         progress: Progress<'_>,
     ) -> Vec<(usize, Vec<SectionValues>)> {
-        let units: Vec<(usize, &Unit)> = shard
-            .range(self.basis.units.len())
-            .map(|number| (number, &self.basis.units[number]))
-            .collect();
+        self.some(shard.range(self.basis.units.len()), shifts, progress)
+    }
+
+    fn some(
+        &self,
+        sections: impl Iterator<Item = usize>,
+        shifts: &Shifts<'_>,
+        progress: Progress<'_>,
+    ) -> Vec<(usize, Vec<SectionValues>)> {
+        let units: Vec<(usize, &Unit)> =
+            sections.map(|number| (number, &self.basis.units[number])).collect();
         let stretch = |(_, unit): &(usize, &Unit)| unit.stretch.map(|stretch| stretch.number);
         // A stretch is read by one worker. Sections by themselves differ in length: distributed one
         // by one, they keep all workers busy.
