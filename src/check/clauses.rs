@@ -29,10 +29,11 @@ impl Checker<'_> {
                 rules: Vec::new(),
                 judged_by: None,
             });
-            let says = block.text(PARAPHRASE).or_else(|| block.title_text());
-            of.says.extend(
-                says.filter(|says| !of.says.contains(says)).into_iter().collect::<Vec<_>>(),
-            );
+            if let Some(says) = block.text(PARAPHRASE).or_else(|| block.title_text())
+                && !of.says.contains(&says)
+            {
+                of.says.push(says);
+            }
             if listed {
                 of.judged_by = block.text("judged by").or(of.judged_by.take());
             } else {

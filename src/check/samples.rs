@@ -101,7 +101,8 @@ impl Checker<'_> {
         self.refuse(error("missing-samples", says, expr).help(help))
     }
 
-    /// `share where Q < 10 kN`, `longest run where ...`, `crossings where ...`: of the samples of a section.
+    /// `share where Q < 10 kN`, `longest run where ...`, `crossings where ...`: of the samples of a
+    /// section.
     pub fn share_of_samples(
         &mut self,
         counted: Counted,
