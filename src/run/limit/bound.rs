@@ -1,11 +1,14 @@
 //! The limit of one group of rows: its bound with factors, and the limits that it refers to.
 
-use super::limits::applies;
 use crate::check::evaluate::{flag, number};
 use crate::check::plan::{EstimateKind, Limit, LimitName, Quantity};
 use crate::result::{Direction, Reason, Subject};
 use crate::run::estimate::{Closeness, Group, RowGroup};
-use crate::run::sections::{Known, Limits};
+use crate::run::sections::{Known, Limits, Vehicle};
+
+pub fn applies(limit: &Limit, vehicle: &Vehicle) -> Result<bool, Reason> {
+    limit.only_when.as_ref().map_or(Ok(true), |condition| flag(condition, &Known::vehicle(vehicle)))
+}
 
 /// The limits of one quantity, for one group of its rows.
 #[derive(Clone, Copy, Debug)]

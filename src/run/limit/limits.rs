@@ -1,10 +1,9 @@
 //! Compares the estimates of a quantity with its limits.
 
 use super::against::{against, spans};
-use super::bound::OfGroup;
+use super::bound::{OfGroup, applies};
 use super::factors::factors;
 use crate::catalog::Statistic;
-use crate::check::evaluate::flag;
 use crate::check::plan::{Estimate, EstimateKind, Limit, Quantity, Report};
 use crate::metrics::statistics::{Divisor, mean, standard_deviation};
 use crate::result::{
@@ -95,10 +94,6 @@ pub struct Judging<'a> {
     pub rows: Group<'a>,
     /// Groups with fewer pairs than the protocol requires.
     pub too_few: &'a [TooFew],
-}
-
-pub(super) fn applies(limit: &Limit, vehicle: &Vehicle) -> Result<bool, Reason> {
-    limit.only_when.as_ref().map_or(Ok(true), |condition| flag(condition, &Known::vehicle(vehicle)))
 }
 
 /// Whether a limit applies to the vehicles of some rows.
