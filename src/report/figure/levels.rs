@@ -90,7 +90,10 @@ impl Levels {
             }
         }
         if !levels.lines.is_empty() {
-            let mut all: Vec<f64> = levels.lines.iter().map(|line| line.value.abs()).collect();
+            // Around zero a limit has two lines, and one number.
+            let two_sided = two_sided && direction == Direction::Magnitude;
+            let number = |line: &Level| if two_sided { line.value.abs() } else { line.value };
+            let mut all: Vec<f64> = levels.lines.iter().map(number).collect();
             all.sort_by(f64::total_cmp);
             all.dedup();
             let decimals = number::decimals(&quantity.unit, all.iter().copied());
@@ -103,12 +106,16 @@ impl Levels {
                 }
                 // Each limit has a dash of its own, or the lines could not be told apart.
                 several => {
-                    for (text, dash) in several.iter().zip(LIMITS) {
+                    let compared = quantity.statistics.iter().flat_map(StatisticResult::compared);
+                    let compared: Vec<_> = compared.collect();
+                    for ((text, limit), dash) in several.iter().zip(&all).zip(LIMITS) {
+                        let edge = compared.iter().find(|edge| edge.limit == Some(*limit));
+                        let direction = edge.map_or(direction, |edge| edge.direction);
                         let text = format!("limit {}{text}", sign(two_sided, direction));
                         levels.explain(Entry::line(Pen { dash, ..LIMIT }, text));
                     }
                     for line in &mut levels.lines {
-                        let nth = all.iter().position(|limit| *limit == line.value.abs());
+                        let nth = all.iter().position(|limit| *limit == number(line));
                         line.pen.dash =
                             nth.and_then(|nth| LIMITS.get(nth).copied()).unwrap_or(DASHED);
                     }
