@@ -174,3 +174,23 @@ fn an_estimate_far_beyond_its_values_is_told() {
     let page = fs::read_to_string(folder.path().join("out/report.html")).expect("a page");
     assert!(page.contains("which is formed from other signals as well"));
 }
+
+/// Each edge stands in the legend of the figure with its own sign, whatever the signs of the values.
+#[test]
+fn both_edges_of_a_limit_are_in_the_legend() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (value, edges, legend) in [
+        ("median", "-200 kN and 300 kN", ["limit ≥ −200", "limit ≤ 300"]),
+        ("-1 * median", "-200 kN and -1 kN", ["limit ≥ −200", "limit ≤ −1"]),
+    ] {
+        let text = format!(
+            "quantity Q_band \"Wheel force\"\n  from  measured\n  of  Q at wheelset 1 and side R\n  \
+             value  {value}\n  limit  each between {edges}\n"
+        );
+        certified(folder.path(), &text);
+        let page = fs::read_to_string(folder.path().join("out/report.html")).expect("a page");
+        for entry in legend {
+            assert!(page.contains(entry), "no `{entry}` for {value} between {edges}");
+        }
+    }
+}
