@@ -148,6 +148,10 @@ impl Checker<'_> {
                 }
                 return Some(found);
             }
+            Node::Near { .. } if scope.samples => {
+                let says = "`near` compares numbers of a section, and here are samples";
+                return self.refuse(error("no-samples", says, &span).help("`|Q - 60 kN| <= 5 kN`"));
+            }
             Node::Near { .. } => return self.near(phrase, scope).map(|near| near.holds),
             Node::Call(name, arguments) if scope.samples && is_signal_function(&name.node) => {
                 return self.over_axis(name, arguments, span, scope);

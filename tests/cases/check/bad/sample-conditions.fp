@@ -85,3 +85,9 @@ quantity of_values "A run of values, and a weighted number"
   limit       (longest run where value > 2 kN) 10 m
   limit       (count weighted by length where value > 2 kN) at most 3
   limit       std 1 kN
+
+quantity nearness "Nearness is of numbers"
+  of     Q
+  from   measured
+  value  share where Q near 50 kN within 10 % and Q > 1 kN
+  in     -
