@@ -34,11 +34,27 @@ impl Number {
             Self::Unsigned(2) => each!(u16),
             Self::Unsigned(4) => each!(u32),
             Self::Unsigned(8) => each!(u64),
+            Self::Float(2) => {
+                let bits = if big { u16::from_be_bytes } else { u16::from_le_bytes };
+                data.as_chunks().0.iter().map(|bytes| half(bits(*bytes))).collect()
+            }
             Self::Float(4) => each!(f32),
             Self::Float(8) => each!(f64),
             _ => return None,
         })
     }
+}
+
+/// The number of a 16-bit float (IEEE 754 binary16).
+pub fn half(bits: u16) -> f64 {
+    let (exponent, fraction) = (i32::from(bits >> 10 & 0x1f), f64::from(bits & 0x3ff));
+    let size = match exponent {
+        0 => fraction * 2f64.powi(-24),
+        0x1f if fraction == 0.0 => f64::INFINITY,
+        0x1f => f64::NAN,
+        _ => (1024.0 + fraction) * 2f64.powi(exponent - 25),
+    };
+    if bits >> 15 == 0 { size } else { -size }
 }
 
 /// Bytes that are read from the front.
@@ -83,5 +99,30 @@ impl<'a> Cursor<'a> {
 
     pub fn u64(&mut self) -> Result<u64, String> {
         Ok(u64::from_le_bytes(self.array()?))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn halves_have_their_values() {
+        // By `numpy.array([...], "u2").view("f2")`.
+        for (bits, value) in [
+            (0x3c00, 1.0),
+            (0xc000, -2.0),
+            (0x3555, 0.333_251_953_125),
+            (0x7bff, 65_504.0),
+            (0x0400, 6.103_515_625e-5),
+            (0x0001, 5.960_464_477_539_063e-8),
+            (0x8000, 0.0),
+            (0x7c00, f64::INFINITY),
+            (0xfc00, f64::NEG_INFINITY),
+        ] {
+            assert_eq!(half(bits), value, "{bits:#x}");
+        }
+        assert!(half(0x7e00).is_nan());
+        assert_eq!(Number::Float(2).read(&[0xc0, 0], true), Some(vec![-2.0]));
     }
 }

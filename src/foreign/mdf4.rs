@@ -1,8 +1,10 @@
 //! ASAM MDF 4: each channel group is a table with a time base of its own.
 
+use falcon_mdf::blocks::DataType;
 use falcon_mdf::model::{Channel as Source, ChannelGroup, ValueKind};
-use falcon_mdf::{Mf4File, OpenOptions};
+use falcon_mdf::{Conversion, Mf4File, OpenOptions};
 
+use super::binary::half;
 use super::guard::Failure;
 use super::load::most_unpacked;
 use super::{Channel, Input, Read, Table, Want, filled};
@@ -110,6 +112,12 @@ fn unreadable(source: &Source) -> Option<String> {
     if source.is_array() {
         return Some("an array".into());
     }
+    if let Conversion::Unsupported { reason, .. } = &source.conversion {
+        return Some(format!("its conversion is not read ({reason})"));
+    }
+    if source.is_float() && !matches!(source.bit_count, HALF | 32 | 64) {
+        return Some(format!("floats of {} bits", source.bit_count));
+    }
     match source.value_kind() {
         ValueKind::Str => Some("text".into()),
         ValueKind::Bytes => Some("bytes".into()),
@@ -120,14 +128,30 @@ fn unreadable(source: &Source) -> Option<String> {
     }
 }
 
+/// Bits of the floats that the other reader does not know.
+const HALF: u32 = 16;
+
 fn values(file: &Mf4File, source: &Source, rows: usize) -> Result<Vec<f64>, String> {
-    let signal = file.signal(source).map_err(|error| error.to_string())?;
+    let halves = source.is_float() && source.bit_count == HALF;
+    let mut read = source.clone();
+    if halves {
+        // The bits of such floats are read as whole numbers.
+        read.data_type = match source.data_type {
+            DataType::FloatBe => DataType::UIntBe,
+            _ => DataType::UIntLe,
+        };
+        read.conversion = Conversion::None;
+    }
+    let signal = file.signal(&read).map_err(|error| error.to_string())?;
     if signal.len() > rows {
         return Err(format!("it has {} samples, its group {rows}", signal.len()));
     }
     let mut values = signal.values_f64().map_err(|error| error.to_string())?;
     if values.len() != rows {
         return Err(format!("{rows} samples are declared, {} are there", values.len()));
+    }
+    if halves {
+        values.iter_mut().for_each(|value| *value = source.convert(half(*value as u16)));
     }
     for (value, valid) in values.iter_mut().zip(signal.validity().unwrap_or_default()) {
         if !valid {

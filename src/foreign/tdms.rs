@@ -46,6 +46,7 @@ struct Object {
     index: Option<Index>,
     /// It is in the list of the present segment.
     listed: bool,
+    has_data: bool,
     values: Vec<f64>,
     /// Why its data are not read.
     left_out: Option<String>,
@@ -53,7 +54,7 @@ struct Object {
 
 struct Reader<'a> {
     objects: IndexMap<String, Object>,
-    /// Objects with data in the present segment, in order.
+    /// Objects of the present segment, in the order of their data; some have none.
     active: Vec<usize>,
     budget: Budget<'a>,
     /// The present segment, for messages.
@@ -152,7 +153,8 @@ impl Reader<'_> {
                 let value = value::property(&mut bytes)?;
                 object.properties.insert(name, value);
             }
-            if has_data && !object.listed {
+            object.has_data = has_data;
+            if !object.listed {
                 object.listed = true;
                 self.active.push(at);
             }
@@ -164,6 +166,7 @@ impl Reader<'_> {
         let parts: Vec<(usize, Index)> = self
             .active
             .iter()
+            .filter(|at| self.objects[**at].has_data)
             .filter_map(|at| Some((*at, self.objects[*at].index?)))
             .filter(|(_, index)| index.size > 0)
             .collect();

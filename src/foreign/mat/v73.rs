@@ -22,6 +22,8 @@ const LARGEST_CHUNK: usize = 64 << 20;
 /// Most objects that references may lead to; a campaign in one file has some thousands.
 const MOST_OBJECTS: usize = 1 << 20;
 
+const TYPE: &str = "numbers of a type that is not read; write them as 64-bit floats";
+
 struct Reader<'a, 'b> {
     input: &'a Input<'a>,
     budget: &'a mut Budget<'b>,
@@ -150,7 +152,7 @@ impl Reader<'_, '_> {
                 Ok(Value::Cells(cells))
             }
             Datatype::FixedPoint { .. } | Datatype::FloatingPoint { .. } => {
-                let values = self.numbers(set, path)?;
+                let Some(values) = self.numbers(set, path)? else { return Ok(Value::Other(TYPE)) };
                 if class == "char" {
                     let letters = char::decode_utf16(values.iter().map(|unit| *unit as u16));
                     let letters = letters.map(|letter| letter.unwrap_or('\u{fffd}'));
@@ -175,19 +177,58 @@ impl Reader<'_, '_> {
         }
     }
 
-    fn numbers(&self, set: &Dataset, path: &str) -> Result<Vec<f64>, Problem> {
-        let bytes = set.read_native_bytes().map_err(|error| self.bad(path, error))?;
+    /// The numbers of a data set; `None` if they are of a type that is not read.
+    fn numbers(&self, set: &Dataset, path: &str) -> Result<Option<Vec<f64>>, Problem> {
         let number = match set.dtype() {
             Datatype::FloatingPoint { size, .. } => Number::Float(usize::from(*size)),
             Datatype::FixedPoint { size, signed: true, .. } => Number::Signed(usize::from(*size)),
             Datatype::FixedPoint { size, .. } => Number::Unsigned(usize::from(*size)),
             // Only these are asked for.
-            _ => return Ok(Vec::new()),
+            _ => return Ok(None),
         };
-        number.read(&bytes, cfg!(target_endian = "big")).ok_or_else(|| {
-            self.bad(path, format!("numbers of the type {:?} are not read", set.dtype()))
-        })
+        let bytes = set.read_native_bytes().map_err(|error| self.bad(path, error))?;
+        let described = set.raw_datatype().map_err(|error| self.bad(path, error))?;
+        let values = number.read(&bytes, cfg!(target_endian = "big"));
+        Ok(values.and_then(|values| reduced(values, number, &described)))
     }
+}
+
+/// Numbers of which a part of the bits counts: those of a converter of 12 bits, for example. `None`
+/// for floats that are not those of IEEE 754.
+///
+/// `described`: the message of the data type (HDF5 File Format Specification, IV.A.2.d): in the
+/// bytes 8 to 11 the place of the first bit and their number, of floats then the place and number
+/// of the bits of exponent and fraction, and the bias of the exponent.
+fn reduced(mut values: Vec<f64>, number: Number, described: &[u8]) -> Option<Vec<f64>> {
+    let part = |at: usize| Some(u16::from_le_bytes(*described.get(at..)?.first_chunk()?));
+    let (first, count) = (i32::from(part(8)?), i32::from(part(10)?));
+    let bits = 8 * i32::try_from(number.size()).ok()?;
+    if let Number::Float(size) = number {
+        // Place and number of the bits of the exponent, and its bias.
+        let (place, exponent, bias) = match size {
+            2 => (10, 5, 15),
+            4 => (23, 8, 127),
+            _ => (52, 11, 1023),
+        };
+        let whole = (first, count) == (0, bits);
+        let layout = [place, exponent, 0, place];
+        let is_plain = whole && described.get(12..16)? == layout && part(16)? == bias;
+        return is_plain.then_some(values);
+    }
+    if count == 0 || first + count > bits {
+        return None;
+    }
+    if count == bits {
+        return Some(values);
+    }
+    // Numbers of less than 64 bits, which a double holds.
+    let (step, range) = (2f64.powi(first), 2f64.powi(count));
+    for value in &mut values {
+        let part = (*value / step).floor().rem_euclid(range);
+        let negative = matches!(number, Number::Signed(_)) && part >= range / 2.0;
+        *value = if negative { part - range } else { part };
+    }
+    Some(values)
 }
 
 /// A struct array is stored as one data set of references for each field.

@@ -8,6 +8,9 @@ use super::value::Property;
 /// third degree.
 const MOST: usize = 16;
 
+/// The source of a scale that takes the raw values.
+const RAW: f64 = u32::MAX as f64;
+
 /// Applies the scales of a channel, unless its values are scaled.
 ///
 /// # Errors
@@ -26,14 +29,20 @@ pub fn apply(properties: &IndexMap<String, Property>, values: &mut [f64]) -> Res
     if count > MOST {
         return Err(format!("it has {count} scales"));
     }
-    for scale in 0..count {
-        let name = |rest: &str| format!("NI_Scale[{scale}]_{rest}");
+    // The last scale makes the values; each says which one it takes them from.
+    let (mut chain, mut next) = (Vec::new(), Some(count - 1));
+    while let Some(scale) = next {
         // A scale without a type belongs to the raw values.
-        let Some(kind) = text(name("Scale_Type")) else { continue };
-        let source = number(name(&format!("{kind}_Input_Source"))).unwrap_or(u32::MAX.into());
-        if source != f64::from(u32::MAX) && source + 1.0 != scale as f64 {
-            return Err("its scales do not follow one another".into());
+        let Some(kind) = text(format!("NI_Scale[{scale}]_Scale_Type")) else { break };
+        chain.push((scale, kind));
+        let source = number(format!("NI_Scale[{scale}]_{kind}_Input_Source"));
+        next = source.filter(|source| *source != RAW).map(|source| source as usize);
+        if next.is_some_and(|next| next >= scale) {
+            return Err(format!("its scale {scale} takes its values from a later one"));
         }
+    }
+    for (scale, kind) in chain.into_iter().rev() {
+        let name = |rest: &str| format!("NI_Scale[{scale}]_{rest}");
         match kind {
             "Linear" => {
                 let slope = number(name("Linear_Slope")).ok_or("its linear scale has no slope")?;
@@ -95,6 +104,23 @@ mod tests {
             (apply(&properties(&list, "Polynomial"), &mut values), values),
             (Ok(()), [3.0, 19.0])
         );
+        // The last of two scales takes the raw values, the output of the first, or its own.
+        for (source, wanted) in [(RAW, Ok(10.0)), (0.0, Ok(30.0)), (1.0, Err(()))] {
+            let mut two = properties(
+                &[
+                    ("NI_Scale[0]_Linear_Slope", 3.0),
+                    ("NI_Scale[0]_Linear_Y_Intercept", 0.0),
+                    ("NI_Scale[1]_Linear_Slope", 10.0),
+                    ("NI_Scale[1]_Linear_Y_Intercept", 0.0),
+                    ("NI_Scale[1]_Linear_Input_Source", source),
+                ],
+                "Linear",
+            );
+            two.insert("NI_Scale[1]_Scale_Type".into(), Property::Text("Linear".into()));
+            two.insert("NI_Number_Of_Scales".into(), Property::Number(2.0));
+            let mut one = [1.0];
+            assert_eq!(apply(&two, &mut one).map(|()| one[0]).map_err(|_| ()), wanted, "{source}");
+        }
         assert!(apply(&properties(&[], "Thermocouple"), &mut values).is_err());
         assert_eq!(apply(&IndexMap::new(), &mut values), Ok(()));
     }
