@@ -75,7 +75,8 @@ pub fn read(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
                 let unit = filled(&source.unit)
                     .or_else(|| source.is_time_channel().then(|| "s".to_string()));
                 let comment = Some(plain(&source.comment)).filter(|comment| !comment.is_empty());
-                table.channels.push(Channel { name: source.name.clone(), unit, comment, values });
+                let name = source.name.clone();
+                table.channels.push(Channel { name, unit, comment, values, since: None });
             }
             if !table.channels.is_empty() {
                 read.tables.push(table);

@@ -65,6 +65,8 @@ pub struct Table {
     pub facts: Vec<(String, String)>,
     /// Samples per second in Hz, from facts of the file or from a channel of time with even steps.
     pub rate: Option<f64>,
+    /// Time of the first row in ns since 1970, where the file states it beside the rate.
+    pub start: Option<i64>,
     /// Number of rows; also known of an outline, which has no values.
     pub rows: usize,
     /// Line, row of the sheet or sample number of the first row, for messages.
@@ -82,7 +84,13 @@ pub struct Channel {
     /// In the unit of the file; NaN where the cell is empty or the sample is marked invalid. A
     /// binary file can hold infinite values.
     pub values: Vec<f64>,
+    /// Of time stamps: the first, in ns since 1970 or, of times of the day alone, since midnight.
+    /// The values are seconds from it.
+    pub since: Option<i64>,
 }
+
+/// Nanoseconds of a second.
+pub const NANOSECONDS: i64 = 1_000_000_000;
 
 fields! {
     /// What is said of a file; the rest is detected.

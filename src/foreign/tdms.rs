@@ -9,7 +9,7 @@ use indexmap::IndexMap;
 use super::binary::Cursor;
 use super::guard::Failure;
 use super::load::{Budget, MOST_CHANNELS};
-use super::{Channel, Input, Read, Table, filled};
+use super::{Channel, Input, NANOSECONDS, Read, Table, filled};
 use crate::problem::Problem;
 
 mod scale;
@@ -48,6 +48,8 @@ struct Object {
     listed: bool,
     has_data: bool,
     values: Vec<f64>,
+    /// Of times: the first.
+    since: Option<i64>,
     /// Why its data are not read.
     left_out: Option<String>,
 }
@@ -226,7 +228,11 @@ impl Reader<'_> {
 
     fn add(&mut self, at: usize, index: Index, data: &[u8], big: bool) -> Result<(), Failure> {
         let object = &mut self.objects[at];
-        let Some(numbers) = value::numbers(index.kind, data, big) else {
+        let numbers = match index.kind {
+            value::TIME => Some(value::times(data, big, &mut object.since)),
+            kind => value::numbers(kind, data, big),
+        };
+        let Some(numbers) = numbers else {
             object.left_out = Some(value::what(index.kind).into());
             return Ok(());
         };
@@ -287,8 +293,8 @@ fn names(path: &str) -> Vec<String> {
     names
 }
 
-/// Channels of a group with the same time base: number of values, step, offset.
-type Base = (usize, u64, u64);
+/// Channels of a group with the same time base: number of values, step, offset, start.
+type Base = (usize, u64, u64, Option<i64>);
 
 /// The tables of a group, and what belongs to none of them.
 #[derive(Default)]
@@ -319,6 +325,9 @@ fn tables(objects: IndexMap<String, Object>) -> Read {
         let number = |name: &str| object.properties.get(name).and_then(Property::number);
         let (step, offset) =
             (number("wf_increment").unwrap_or(0.0), number("wf_start_offset").unwrap_or(0.0));
+        let start = object.properties.get("wf_start_time").and_then(Property::instant);
+        let start =
+            start.and_then(|start| start.checked_add((offset * NANOSECONDS as f64).round() as i64));
         let text = |name: &str| object.properties.get(name).and_then(|value| filled(&value.text()));
         let time = object.index.is_some_and(|index| index.kind == value::TIME);
         let (waveform, comment) = (facts("wf_"), text("description"));
@@ -334,13 +343,15 @@ fn tables(objects: IndexMap<String, Object>) -> Read {
             group.left_out.push((name, why));
             continue;
         }
-        let table = group.tables.entry((rows, step.to_bits(), offset.to_bits())).or_default();
+        let table =
+            group.tables.entry((rows, step.to_bits(), offset.to_bits(), start)).or_default();
         if table.channels.is_empty() {
             table.rate = (step > 0.0 && step.is_finite()).then(|| 1.0 / step);
+            table.start = start;
             table.facts = waveform;
         }
-        let values = if time { from_first(object.values) } else { object.values };
-        table.channels.push(Channel { name, unit, comment, values });
+        let Object { values, since, .. } = object;
+        table.channels.push(Channel { name, unit, comment, values, since });
     }
     for (group, Group { tables, facts, mut left_out }) in groups {
         let several = tables.len() > 1;
@@ -352,11 +363,4 @@ fn tables(objects: IndexMap<String, Object>) -> Read {
         }
     }
     read
-}
-
-/// Times as seconds from the first.
-fn from_first(mut times: Vec<f64>) -> Vec<f64> {
-    let first = times.first().copied().unwrap_or(0.0);
-    times.iter_mut().for_each(|time| *time -= first);
-    times
 }

@@ -14,6 +14,12 @@ use crate::problem::Problem;
 /// Columns of a sheet.
 const COLUMNS: u32 = 16_384;
 const SECONDS_A_DAY: f64 = 86_400.0;
+/// Steps of a second to which times are rounded, and the nanoseconds of one: Excel shows
+/// milliseconds, and its days resolve 0.6 µs today.
+const STEPS: f64 = 1e5;
+const STEP: i64 = 10_000;
+/// 1970-01-01 in the days of Excel.
+const EPOCH: f64 = 25_569.0;
 /// Maximum number of facts of a sheet without a table, and of cells of a header that are looked at.
 const MOST_FACTS: usize = 100;
 
@@ -195,7 +201,7 @@ fn table(
             |text| name_and_unit(&text),
         );
         let unit = heading(units, column).and_then(|text| unbracketed(&text)).or(unit);
-        let Some((values, time)) = values(options, &cells).map_err(|(at, text)| {
+        let Some((values, since)) = values(options, &cells).map_err(|(at, text)| {
             let cell = format!("{}{}", letters(column), data[at].0 + 1);
             let says = format!(
                 "`{}`, sheet `{name}`, cell {cell}: `{text}` is not a number as in the rows before",
@@ -209,9 +215,10 @@ fn table(
         };
         table.channels.push(Channel {
             name: called,
-            unit: if time { Some("s".into()) } else { unit },
-            comment: time.then(|| "seconds from the first time".into()),
+            unit: if since.is_some() { Some("s".into()) } else { unit },
+            comment: since.map(|_| "seconds from the first time".into()),
             values,
+            since,
         });
     }
     Ok(Ok(table))
@@ -260,8 +267,8 @@ fn headers<'a>(
     Ok(Headers { names, units })
 }
 
-/// The values of a column, and whether they are times.
-type Numbers = (Vec<f64>, bool);
+/// The values of a column; of times seconds from the first, and that one in ns since 1970.
+type Numbers = (Vec<f64>, Option<i64>);
 
 /// The numbers of a column; `None` for texts.
 ///
@@ -273,8 +280,7 @@ fn values(options: &Options, cells: &[Option<&Cell>]) -> Result<Option<Numbers>,
         let texts: Vec<&str> =
             cells.iter().map(|cell| cell.and_then(Cell::text).unwrap_or("")).collect();
         let times = stamps_from_first(&texts, options);
-        let times = times.filter(|_| there().all(|cell| cell.text().is_some()));
-        return Ok(times.map(|times| (times, true)));
+        return Ok(times.filter(|_| there().all(|cell| cell.text().is_some())));
     }
     let wrong = cells.iter().enumerate().find_map(|(at, cell)| Some((at, (*cell)?.text()?)));
     if let Some((at, text)) = wrong {
@@ -283,12 +289,15 @@ fn values(options: &Options, cells: &[Option<&Cell>]) -> Result<Option<Numbers>,
     let days = there().all(|cell| matches!(cell, Cell::Days(_)));
     let first =
         there().find_map(|cell| if let Cell::Days(days) = cell { Some(*days) } else { None });
+    let steps = |days: f64| (days * SECONDS_A_DAY * STEPS).round();
+    let first = first.filter(|_| days).unwrap_or(0.0);
     let number = |cell: &Option<&Cell>| match cell {
-        Some(Cell::Days(day)) if days => (day - first.unwrap_or(0.0)) * SECONDS_A_DAY,
+        Some(Cell::Days(day)) if days => steps(day - first) / STEPS,
         Some(Cell::Number(number) | Cell::Days(number)) => *number,
         _ => f64::NAN,
     };
-    Ok(Some((cells.iter().map(number).collect(), days)))
+    let since = (steps(first - EPOCH) as i64).saturating_mul(STEP);
+    Ok(Some((cells.iter().map(number).collect(), days.then_some(since))))
 }
 
 /// Rows of two cells, the first a text: `Fahrzeug | Wagen 5`.

@@ -174,7 +174,7 @@ impl Columns {
             };
             let unit = unit.or_else(|| values::is_time(field.data_type()).then(|| "s".into()));
             let comment = stated(&["comment", "description"]).cloned();
-            table.channels.push(Channel { name, unit, comment, values: Vec::new() });
+            table.channels.push(Channel { name, unit, comment, ..Channel::default() });
         }
         input.budget().take(places.len(), rows, "the table")?;
         let origins = vec![None; places.len()];

@@ -177,12 +177,12 @@ fn matrix(fields: &Fields) -> Option<(Vec<Channel>, Vec<String>)> {
     let channel = |index: usize| Channel {
         name: names[index].trim().to_string(),
         unit: units.and_then(|(_, units)| filled(&units[index])),
-        comment: None,
         values: if by_column {
             values[index * rows..(index + 1) * rows].to_vec()
         } else {
             values.iter().skip(index).step_by(rows).copied().collect()
         },
+        ..Channel::default()
     };
     let mut used = vec![data.clone(), (*names_field).clone()];
     used.extend(units.map(|(name, _)| (*name).clone()));
@@ -208,8 +208,8 @@ fn listed(elements: &[Fields]) -> Option<Vec<Channel>> {
         Some(Channel {
             name: filled(text(false)?)?,
             unit: text(true).and_then(filled),
-            comment: None,
             values: longest.clone(),
+            ..Channel::default()
         })
     };
     let channels: Option<Vec<Channel>> = elements.iter().map(channel).collect();
@@ -254,7 +254,7 @@ fn vectors(fields: Fields, units: Option<&Value>, table: &mut Table) {
                     let name =
                         if several { format!("{name}({})", index + 1) } else { name.clone() };
                     let (unit, values) = (unit_of(&name), part.to_vec());
-                    table.channels.push(Channel { name, unit, comment: None, values });
+                    table.channels.push(Channel { name, unit, values, ..Channel::default() });
                 }
             }
             other => rest.push((name, other)),

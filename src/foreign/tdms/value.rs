@@ -1,5 +1,6 @@
 //! Values of TDMS: numbers, texts, properties.
 
+use super::super::NANOSECONDS;
 use super::super::binary::{Cursor, Number};
 use super::EPOCH;
 
@@ -40,16 +41,24 @@ pub fn what(kind: u32) -> &'static str {
     }
 }
 
-/// Values as numbers; `None` if they are not numbers. Times are seconds since 1970.
+/// Values as numbers; `None` if they are not plain numbers.
 pub fn numbers(kind: u32, data: &[u8], big: bool) -> Option<Vec<f64>> {
-    if kind != TIME {
-        return number(kind)?.read(data, big);
-    }
+    number(kind)?.read(data, big)
+}
+
+/// Times as seconds from the first of the file, which `since` keeps in ns since 1970: as seconds
+/// since 1970 they have more digits than a double. NaN before 1677 and after 2262.
+pub fn times(data: &[u8], big: bool, since: &mut Option<i64>) -> Vec<f64> {
     let seconds = |bytes: &[u8; 16]| {
-        time(&mut Cursor::new(bytes, big))
-            .map_or(f64::NAN, |(seconds, fraction)| seconds as f64 + fraction)
+        let (seconds, fraction) = time(&mut Cursor::new(bytes, big)).ok()?;
+        let at = nanoseconds(seconds, fraction)?;
+        Some(at.checked_sub(*since.get_or_insert(at))? as f64 / NANOSECONDS as f64)
     };
-    Some(data.as_chunks().0.iter().map(seconds).collect())
+    data.as_chunks().0.iter().map(seconds).map(|time| time.unwrap_or(f64::NAN)).collect()
+}
+
+fn nanoseconds(seconds: i64, fraction: f64) -> Option<i64> {
+    seconds.checked_mul(NANOSECONDS)?.checked_add((fraction * NANOSECONDS as f64).round() as i64)
 }
 
 /// A property of an object.
@@ -65,6 +74,14 @@ impl Property {
     pub fn number(&self) -> Option<f64> {
         match self {
             Self::Number(number) => Some(*number),
+            _ => None,
+        }
+    }
+
+    /// A time in ns since 1970. LabVIEW writes the beginning of its epoch where there is none.
+    pub fn instant(&self) -> Option<i64> {
+        match self {
+            Self::Time(seconds, fraction) if *seconds != -EPOCH => nanoseconds(*seconds, *fraction),
             _ => None,
         }
     }

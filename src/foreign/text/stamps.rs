@@ -1,6 +1,6 @@
 //! Time stamps: dates, clock times, both.
 
-use super::super::Options;
+use super::super::{NANOSECONDS, Options};
 use crate::yaml::Words;
 
 /// Order of day, month and year in a date of numbers.
@@ -36,7 +36,6 @@ pub struct Date {
 const LONGEST: usize = 40;
 /// Years of measurements; also a bound for nanoseconds in 64 bits.
 const YEARS: std::ops::RangeInclusive<i64> = 1900..=2200;
-pub const NANOSECONDS: i64 = 1_000_000_000;
 pub const DAY: i64 = 86_400 * NANOSECONDS;
 
 /// Reads a trimmed cell.

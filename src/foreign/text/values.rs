@@ -4,11 +4,11 @@ use std::ops::Range;
 
 use super::dialect::{Line, Separator, is_row};
 use super::header::Heading;
-use super::stamps::{self, DAY, NANOSECONDS, Stamp};
+use super::stamps::{self, DAY, Stamp};
 use super::{Text, numbers};
 use crate::data::cells::shortened;
 use crate::data::faults::Faults;
-use crate::foreign::{Channel, Options, Table};
+use crate::foreign::{Channel, NANOSECONDS, Options, Table};
 use crate::problem::Problem;
 
 /// A column while it is read.
@@ -168,7 +168,7 @@ fn finish(
     });
     for (index, (column, heading)) in columns.into_iter().zip(headings).enumerate() {
         let channel = match column {
-            Column::Numbers(values) => Ok((values, heading.unit, heading.comment)),
+            Column::Numbers(values) => Ok((values, None, heading.unit, heading.comment)),
             Column::Stamps(_) if days.as_ref().is_some_and(|(day, _)| *day == index) => {
                 Err("its dates are part of the times".into())
             }
@@ -182,17 +182,17 @@ fn finish(
                             .map(|(stamp, day)| Stamp { date: day.date, clock: stamp.clock });
                     }
                 }
-                let values = times(text, rows, &stamps, of_dates, &heading)?;
+                let (values, since) = times(text, rows, &stamps, of_dates, &heading)?;
                 let comment = "seconds from the first time stamp".to_string();
-                Ok((values, Some("s".to_string()), Some(comment)))
+                Ok((values, since, Some("s".to_string()), Some(comment)))
             }
             Column::Text(first) => Err(format!("its cells are text, such as `{first}`")),
             Column::Unknown(_) => Err("its cells are empty".into()),
         };
         let name = heading.name;
         match channel {
-            Ok((values, unit, comment)) => {
-                table.channels.push(Channel { name, unit, comment, values })
+            Ok((values, since, unit, comment)) => {
+                table.channels.push(Channel { name, unit, comment, values, since })
             }
             Err(why) => table.left_out.push((name, why)),
         }
@@ -204,15 +204,18 @@ fn finish(
     Ok(())
 }
 
-/// The stamps of a column in seconds; `of_dates`: the column that their dates are from.
+/// Seconds from the first stamp, and that stamp in ns.
+pub type Times = (Vec<f64>, Option<i64>);
+
+/// The times of the stamps of a column; `of_dates`: the column that their dates are from.
 fn times(
     text: &Text<'_>,
     rows: &[Line<'_>],
     stamps: &[Option<Stamp>],
     of_dates: usize,
     Heading { name, span, .. }: &Heading,
-) -> Result<Vec<f64>, Problem> {
-    let values = seconds(text.options, stamps).ok_or_else(|| {
+) -> Result<Times, Problem> {
+    let (values, since) = seconds(text.options, stamps).ok_or_else(|| {
         let says =
             format!("the dates of `{name}` can be read with the day or with the month first");
         let problem = Problem::error("date-order", says).help(
@@ -235,7 +238,7 @@ fn times(
             let says = format!("`{name}`: `{written}` has no date of the calendar");
             Err(text.fault("not-a-date", says, line, cell))
         }
-        None => Ok(values),
+        None => Ok((values, since)),
     }
 }
 
@@ -247,8 +250,8 @@ fn only_dates(stamps: &[Option<Stamp>]) -> bool {
     stamps.iter().flatten().all(|stamp| stamp.date.is_some() && stamp.clock.is_none())
 }
 
-/// Seconds from the first stamp; `None` if the order of day and month is not known.
-fn seconds(options: &Options, stamps: &[Option<Stamp>]) -> Option<Vec<f64>> {
+/// The times of stamps; `None` if the order of day and month is not known.
+fn seconds(options: &Options, stamps: &[Option<Stamp>]) -> Option<Times> {
     let dates: Vec<stamps::Date> = stamps.iter().flatten().filter_map(|stamp| stamp.date).collect();
     let order = stamps::order(&dates, options).ok()?;
     let (mut first, mut before, mut nights) = (None, None, 0);
@@ -266,12 +269,13 @@ fn seconds(options: &Options, stamps: &[Option<Stamp>]) -> Option<Vec<f64>> {
         let time = (day + nights) * DAY + clock;
         (time - *first.get_or_insert(time)) as f64 / NANOSECONDS as f64
     });
-    Some(values.collect())
+    let values = values.collect();
+    Some((values, first))
 }
 
-/// Texts as seconds from the first of them, if all that are filled are time stamps.
+/// The times of texts, if all that are filled are time stamps.
 #[cfg(feature = "foreign")]
-pub fn stamps_from_first(cells: &[&str], options: &Options) -> Option<Vec<f64>> {
+pub fn stamps_from_first(cells: &[&str], options: &Options) -> Option<Times> {
     let read = |cell: &&str| {
         if cell.trim().is_empty() { Some(None) } else { stamps::read(cell.trim()).map(Some) }
     };

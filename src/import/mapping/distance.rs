@@ -7,7 +7,7 @@ use crate::problem::{Problem, error};
 use crate::source::{Span, Spanned};
 use crate::units::{Dimension, Unit};
 use crate::yaml::{
-    FromNode, Hertz, Key, Metres, Node, OneOrMore, Ratio, Reader, Seconds, Value, fields,
+    Entries, FromNode, Hertz, Key, Metres, Node, OneOrMore, Ratio, Reader, Seconds, Value, fields,
     span_of_value,
 };
 
@@ -25,6 +25,8 @@ fields! {
         "rate" rate: Option<Hertz>,
         /// Added to the time.
         "shift" shift: Option<Stated<Seconds>>,
+        /// When the tables of a file start, each by its name, where the file does not state it.
+        "starts" starts: Entries<Seconds>,
         /// How much the clock of the record is fast.
         "drift" drift: Ratio = Ratio(0.0),
     } also {
@@ -74,7 +76,8 @@ impl Time {
     /// A time of which the file says all.
     pub(super) fn from_file(from: Vec<Spanned<String>>, span: Span) -> Self {
         let from = OneOrMore(from);
-        Self { from, unit: None, rate: None, shift: None, drift: Ratio(0.0), span }
+        let (unit, rate, shift, starts) = (None, None, None, Entries(Vec::new()));
+        Self { from, unit, rate, shift, starts, drift: Ratio(0.0), span }
     }
 }
 
@@ -103,6 +106,13 @@ impl FromNode<&Sections> for SideTime {
                 from.value
             );
             reader.fault("contradiction", says, &from.span);
+        }
+        if let (Some((start, _)), Some(from)) = (time.starts.0.first(), time.from.0.first()) {
+            let says = format!(
+                "the time is from the channel `{}`, and starts of tables are stated",
+                from.value
+            );
+            reader.fault("contradiction", says, &start.span);
         }
         if let Some(Spanned { value: unit, span }) = &time.unit
             && unit.dimension != Dimension::TIME

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::recording::{Recording, nearest_or_first};
 use super::short;
 use crate::data::checks::{self, Steps};
-use crate::foreign::{Channel, Table};
+use crate::foreign::{Channel, NANOSECONDS, Table};
 use crate::metrics::{resample, sinc};
 use crate::problem::{Problem, error};
 use crate::source::Spanned;
@@ -30,6 +30,20 @@ pub struct Clock {
     /// Whether the steps differ by more than a record of a campaign may have.
     pub uneven: bool,
     pub gaps: Option<Gaps>,
+    pub zero: Zero,
+    /// Of several tables: seconds from the first that starts.
+    pub starts: f64,
+}
+
+/// What the times of a table count from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Zero {
+    /// A time in ns, of the calendar or of the day.
+    Stamp(i64),
+    /// That of the channels of time of other tables.
+    Numbers,
+    /// The first sample, whose time nothing states.
+    Start,
 }
 
 /// Where time has gaps, as the file has it.
@@ -46,13 +60,82 @@ impl Clock {
     /// Times of events, which have no steps: two at least.
     pub fn of_events(times: Vec<f64>) -> Self {
         let rate = mean_rate(&times);
-        Self { times, rate, even: false, uneven: true, gaps: None }
+        Self {
+            times,
+            rate,
+            even: false,
+            uneven: true,
+            gaps: None,
+            zero: Zero::Numbers,
+            starts: 0.0,
+        }
     }
 }
 
+/// The clocks of the tables that are used, as one: their times count from the same zero.
+///
+/// # Errors
+/// `time-missing`, `time-not-increasing`, `too-short`, `unknown-channel`, `unknown-table`,
+/// `unit-missing`; of the shift `unknown-fact`, `wrong-number`. `start-missing`: it is not known when
+/// one table starts on the clock of another.
+pub fn clocks(recording: &Recording<'_>, used: &[bool]) -> Result<Vec<Option<Clock>>, Problem> {
+    let alone = used.iter().filter(|used| **used).count() == 1;
+    let tables = recording.tables.iter().zip(used);
+    let mut clocks = tables
+        .map(|(table, used)| used.then(|| clock(recording, table, alone)).transpose())
+        .collect::<Result<Vec<_>, Problem>>()?;
+    if alone {
+        return Ok(clocks);
+    }
+    let zeros = || clocks.iter().flatten().map(|clock| clock.zero);
+    let stamps =
+        zeros().filter_map(|zero| if let Zero::Stamp(at) = zero { Some(at) } else { None });
+    let first = stamps.min();
+    let mut others = zeros().filter(|zero| !matches!(zero, Zero::Stamp(_)));
+    if first.is_some() && others.next().is_some() || zeros().any(|zero| zero == Zero::Start) {
+        return Err(start_missing(recording, &clocks));
+    }
+    let drift = recording.side.time.drift.0;
+    for clock in clocks.iter_mut().flatten() {
+        if let (Some(first), Zero::Stamp(at)) = (first, clock.zero) {
+            clock.starts = at.saturating_sub(first) as f64 / NANOSECONDS as f64 / (1.0 + drift);
+            clock.times.iter_mut().for_each(|time| *time += clock.starts);
+        }
+    }
+    Ok(clocks)
+}
+
+/// The error that tables have no common clock: what each counts from.
+fn start_missing(recording: &Recording<'_>, clocks: &[Option<Clock>]) -> Problem {
+    let tables = || recording.tables.iter().zip(clocks);
+    let counts = tables().filter_map(|(table, clock)| {
+        let from = match clock.as_ref()?.zero {
+            Zero::Stamp(_) => "a time of the calendar or of the day",
+            Zero::Numbers => "the zero of its channel of time",
+            Zero::Start => "its first sample",
+        };
+        Some(format!("`{}` from {from}", table.name))
+    });
+    let counts: Vec<String> = counts.take(MOST_TOLD).collect();
+    let says = format!(
+        "`{}`: it is not known when its tables start on one clock; their times count: {}",
+        recording.shown,
+        counts.join(", ")
+    );
+    let names = tables().filter(|(_, clock)| clock.is_some()).map(|(table, _)| &table.name);
+    let starts: Vec<String> = names.take(MOST_TOLD).map(|name| format!("{name}: 0 s")).collect();
+    error("start-missing", says, &recording.side.time.span).help(format!(
+        "state it beside the rate: `time: {{starts: {{{}}}}}`; or write the channels of their times, `time: [NAME, NAME]`",
+        starts.join(", ")
+    ))
+}
+
+/// Tables that are named in a problem.
+const MOST_TOLD: usize = 6;
+
 /// The times of a table, with the shift and the drift of the mapping. `alone`: no other table is
 /// used.
-pub fn clock(recording: &Recording<'_>, table: &Table, alone: bool) -> Result<Clock, Problem> {
+fn clock(recording: &Recording<'_>, table: &Table, alone: bool) -> Result<Clock, Problem> {
     let time = &recording.side.time;
     let which =
         if table.name.is_empty() { String::new() } else { format!(", table `{}`", table.name) };
@@ -60,6 +143,7 @@ pub fn clock(recording: &Recording<'_>, table: &Table, alone: bool) -> Result<Cl
     let named = |name: &str| table.channels.iter().find(|channel| channel.name == name);
     let found = time.from.0.iter().find_map(|name| Some((name, named(&name.value)?)));
     let mut factor = 1.0;
+    let zero;
     let mut times: Vec<f64> = match (found, time.from.0.first()) {
         (Some((name, channel)), _) => {
             let unit = time_unit(recording, channel).map_err(|has| {
@@ -68,25 +152,27 @@ pub fn clock(recording: &Recording<'_>, table: &Table, alone: bool) -> Result<Cl
                     .help(format!("write its unit: `time: {{from: {}, unit: s}}`", name.value))
             })?;
             factor = unit.factor;
+            zero = channel.since.map_or(Zero::Numbers, Zero::Stamp);
             channel.values.iter().map(|value| unit.to_si(*value)).collect()
         }
         (None, Some(first)) => return Err(no_time(table, first, &file)),
         (None, None) => {
-            let rate = time.rate.map(Quantity::si).or(table.rate);
-            let Some(rate) = rate.filter(|rate| *rate > 0.0 && alone) else {
-                let says = if alone {
-                    format!("{file} states neither a time nor a sampling rate")
-                } else {
-                    format!(
-                        "`{}`: the channels are in several tables, and the mapping does not say what their time is",
-                        recording.shown
-                    )
-                };
+            // Several tables have their own rates; of one, the mapping knows better than the file.
+            let stated = time.rate.map(Quantity::si);
+            let rate = if alone { stated.or(table.rate) } else { table.rate.or(stated) };
+            let Some(rate) = rate.filter(|rate| *rate > 0.0) else {
+                let says = format!("{file} states neither a time nor a sampling rate");
                 return Err(error("time-missing", says, &time.span).help(
                     "write `time: NAME`, the channel of the time, or `time: {rate: 200 Hz}`",
                 ));
             };
-            (0..table.rows).map(|row| row as f64 / rate).collect()
+            let start = starts(recording, table)?;
+            zero = match (start, table.start) {
+                (Some(_), _) => Zero::Numbers,
+                (None, Some(at)) => Zero::Stamp(at),
+                (None, None) => Zero::Start,
+            };
+            (0..table.rows).map(|row| row as f64 / rate + start.unwrap_or(0.0)).collect()
         }
     };
     increasing(recording, table, &times, &file)?;
@@ -112,7 +198,19 @@ pub fn clock(recording: &Recording<'_>, table: &Table, alone: bool) -> Result<Cl
         .iter()
         .enumerate()
         .all(|(at, time)| (time - (first + at as f64 / rate)).abs() * rate <= EVEN);
-    Ok(Clock { times, rate, even, uneven: uneven.is_some() || gaps.is_some(), gaps })
+    let uneven = uneven.is_some() || gaps.is_some();
+    Ok(Clock { times, rate, even, uneven, gaps, zero, starts: 0.0 })
+}
+
+/// When a table starts, as the mapping states it.
+fn starts(recording: &Recording<'_>, table: &Table) -> Result<Option<f64>, Problem> {
+    let starts = &recording.side.time.starts.0;
+    let known = || recording.tables.iter().map(|table| table.name.as_str());
+    if let Some((key, _)) = starts.iter().find(|(key, _)| !known().any(|name| name == key.text)) {
+        let says = format!("`{}` has no table `{}`", recording.shown, key.text);
+        return Err(error("unknown-table", says, &key.span).suggest(&key.text, known()));
+    }
+    Ok(starts.iter().find(|(key, _)| key.text == table.name).map(|(_, start)| start.si()))
 }
 
 /// Samples per second of times, two at least.
@@ -251,10 +349,22 @@ pub enum How {
 pub fn way(clock: &Clock, is_base: bool, grid: &Grid) -> How {
     let uneven = || grid.rows.is_none() && clock.uneven && same_rate(clock.rate, grid.rate);
     match &grid.rows {
-        Some(_) if is_base => How::AsRecorded,
+        Some(_) if is_base || sampled_at(clock, grid).is_some() => How::AsRecorded,
         _ if clock.rate < grid.rate * (1.0 - SAME_RATE) || uneven() => How::Linear,
         _ => How::Filtered,
     }
+}
+
+/// The rows of a table that are sampled at the points of the grid.
+fn sampled_at(clock: &Clock, grid: &Grid) -> Option<Range<usize>> {
+    /// Difference of two times that are the same, as a share of a step: the rounding of doubles.
+    const SAME: f64 = 1e-6;
+    let most = SAME / grid.rate;
+    let first = grid.times.first()?;
+    let from = clock.times.partition_point(|time| *time < first - most);
+    let times = clock.times.get(from..from + grid.times.len())?;
+    let same = times.iter().zip(&grid.times).all(|(one, other)| (one - other).abs() <= most);
+    same.then(|| from..from + grid.times.len())
 }
 
 /// A signal at the points of the grid. An axis is always interpolated linearly, and then increases.
@@ -268,8 +378,10 @@ pub fn on_grid(
     grid: &Grid,
     axis: bool,
 ) -> Result<(Vec<f64>, How), String> {
-    if let Some(rows) = grid.rows.as_ref().filter(|_| is_base) {
-        return Ok((values[rows.clone()].to_vec(), How::AsRecorded));
+    if let Some(of_base) = &grid.rows
+        && let Some(rows) = if is_base { Some(of_base.clone()) } else { sampled_at(clock, grid) }
+    {
+        return Ok((values[rows].to_vec(), How::AsRecorded));
     }
     if axis || way(clock, is_base, grid) == How::Linear {
         let (first, last) = (clock.times[0], clock.times[clock.times.len() - 1]);
@@ -309,6 +421,8 @@ mod tests {
             even: true,
             uneven: false,
             gaps: None,
+            zero: Zero::Numbers,
+            starts: 0.0,
         }
     }
 

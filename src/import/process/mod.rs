@@ -26,7 +26,7 @@ use crate::problem::{Problem, Severity, error};
 use crate::source::Spanned;
 use crate::units::Unit;
 use crate::units::number::significant;
-use clock::{Clock, Grid, How, clock, grid, on_grid};
+use clock::{Clock, Grid, How, grid, on_grid};
 use recording::Source;
 
 /// A column of a record in SI.
@@ -294,11 +294,7 @@ fn clocks(
             wanted[recording.find(&term.name, map.table.as_ref())?.0] = true;
         }
     }
-    let alone = wanted.iter().filter(|wanted| **wanted).count() == 1;
-    let tables = recording.tables.iter().zip(wanted);
-    tables
-        .map(|(table, wanted)| wanted.then(|| clock(recording, table, alone)).transpose())
-        .collect()
+    clock::clocks(recording, &wanted)
 }
 
 /// The time that all used tables cover.

@@ -183,6 +183,12 @@ pub fn told(recording: &Recording<'_>, sampling: &Sampling, steps: &mut Vec<Stri
     if let Some(shift) = &time.shift {
         steps.push(format!("time shifted ({})", shift.from_where()));
     }
+    for (table, clock) in recording.tables.iter().zip(&sampling.clocks) {
+        if let Some(starts) = clock.as_ref().map(|clock| clock.starts).filter(|at| *at > 0.0) {
+            let name = &table.name;
+            steps.push(format!("table `{name}` starts {} s after the first", short(starts)));
+        }
+    }
     let (count, rate, to) = (grid.times.len(), short(base.rate), short(grid.rate));
     steps.push(match (&grid.rows, way(base, true, grid)) {
         (Some(rows), _) => {

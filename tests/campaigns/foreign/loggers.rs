@@ -83,3 +83,94 @@ fn an_unknown_formula_leaves_out_its_channel() {
     let [(name, why)] = &file.tables[0].left_out[..] else { panic!("{file:?}") };
     assert!(name == "Y" && why.contains("its conversion is not read"), "{name}: {why}");
 }
+
+/// Imports a mapping of files of the folder; the record of the only section by its columns.
+#[track_caller]
+fn imported(side: &str) -> Vec<(String, Vec<f64>)> {
+    let (problems, record) = tried(side);
+    record.unwrap_or_else(|| panic!("{}", problems.render(false)))
+}
+
+fn tried(side: &str) -> (Problems, Option<Vec<(String, Vec<f64>)>>) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("out");
+    let text = format!("name: x\nsections: [S]\nmeasurement:\n{side}");
+    let (problems, done) = crate::import::imported(&text, "m.yaml", Path::new(CASES), &out);
+    let columns = || {
+        let text = std::fs::read_to_string(out.join("measurement/S.csv")).expect("a record");
+        let mut rows = text.lines().map(|line| line.split(','));
+        let mut columns: Vec<(String, Vec<f64>)> =
+            rows.next().expect("names").map(|name| (name.to_string(), Vec::new())).collect();
+        for row in rows {
+            for ((_, values), cell) in columns.iter_mut().zip(row) {
+                values.push(cell.parse().expect("a number"));
+            }
+        }
+        columns
+    };
+    (problems, done.then(columns))
+}
+
+#[track_caller]
+fn refused(side: &str, code: &str) -> String {
+    let (problems, record) = tried(side);
+    let text = problems.render(false);
+    assert!(record.is_none() && problems.0[0].code == code, "{text}");
+    text
+}
+
+/// Both channels are 5 m/s times the time since the first sample of the file.
+#[track_caller]
+fn on_one_clock(side: &str, (from, to): (f64, f64), rows: usize) {
+    let columns = imported(side);
+    let [(_, time), (_, sa), (_, sb)] = &columns[..] else { panic!("{columns:?}") };
+    assert_eq!(time.len(), rows);
+    assert!((time[0] - from).abs() < 1e-9 && (time[rows - 1] - to).abs() < 1e-9, "{time:?}");
+    for ((time, sa), sb) in time.iter().zip(sa).zip(sb) {
+        assert!(
+            (sa - 5.0 * time).abs() < 1e-6 && (sb - 5.0 * time).abs() < 1e-6,
+            "{time} {sa} {sb}"
+        );
+    }
+}
+
+#[test]
+fn channels_that_start_at_different_times_are_on_one_clock() {
+    // `wf_start_time`, 0.5 s apart in one group.
+    let start = "  files: tdms-start-times.tdms\n  channels: {sa: sa, sb: sb}\n";
+    on_one_clock(start, (0.5, 0.99), 50);
+    // Channels of stamps in two groups, at 100 Hz and 10 Hz, 0.5 s apart.
+    let stamps =
+        "  files: tdms-stamps-two-groups.tdms\n  time: [ta, tb]\n  channels: {sa: sa, sb: sb}\n";
+    on_one_clock(stamps, (0.5, 0.99), 50);
+    // Two sheets with dates, at 100 Hz and 50 Hz, across midnight.
+    let sheets = "  files: xlsx-two-starts.xlsx\n  time: [ta, tb]\n  channels: {sa: sa, sb: sb}\n";
+    on_one_clock(sheets, (0.5, 1.48), 99);
+}
+
+#[test]
+fn groups_of_different_rates_need_their_starts() {
+    let side =
+        |time: &str| format!("  files: tdms-rates.tdms\n{time}  channels: {{sa: sa, sb: sb}}\n");
+    let text = refused(&side(""), "start-missing");
+    assert!(text.contains("starts: {fast: 0 s, slow: 0 s}"), "{text}");
+    refused(&side("  time: {rate: 100 Hz}\n"), "start-missing");
+    on_one_clock(&side("  time: {starts: {fast: 0 s, slow: 0.1 s}}\n"), (0.1, 0.99), 90);
+    refused(&side("  time: {starts: {fast: 0 s, slo: 0.1 s}}\n"), "unknown-table");
+}
+
+/// Two groups with the same start and increment: each by its own, with the rate stated or not.
+#[test]
+fn groups_with_the_same_start_are_one_record() {
+    for time in ["", "  time: {rate: 200 Hz}\n"] {
+        let columns = imported(&format!(
+            "  files: tdms-groups.tdms\n{time}  distance: s\n  channels: {{Y: Y, ay: ay}}\n"
+        ));
+        let names: Vec<&str> = columns.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(names, ["time [s]", "distance [m]", "Y [kN]", "ay [m/s^2]"]);
+        // By npTDMS 1.13: the second samples, and the last of the distance.
+        let at = |column: usize, row: usize| columns[column].1[row];
+        assert_eq!((columns[0].1.len(), at(0, 1), at(1, 399)), (400, 0.005, 179.8));
+        assert!((at(2, 1) - 0.031_410_76).abs() < 1e-8 && (at(3, 1) - 0.031_410_76).abs() < 1e-8);
+    }
+}
