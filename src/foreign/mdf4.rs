@@ -76,7 +76,7 @@ pub fn read(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
                     .or_else(|| source.is_time_channel().then(|| "s".to_string()));
                 let comment = Some(plain(&source.comment)).filter(|comment| !comment.is_empty());
                 let name = source.name.clone();
-                table.channels.push(Channel { name, unit, comment, values, since: None });
+                table.channels.push(Channel { name, unit, comment, values, ..Channel::default() });
             }
             if !table.channels.is_empty() {
                 read.tables.push(table);

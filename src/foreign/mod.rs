@@ -80,6 +80,8 @@ pub struct Channel {
     pub name: String,
     /// As written in the file.
     pub unit: Option<String>,
+    /// Another unit that the file states of it, and that is not the same.
+    pub other_unit: Option<String>,
     pub comment: Option<String>,
     /// In the unit of the file; NaN where the cell is empty or the sample is marked invalid. A
     /// binary file can hold infinite values.
@@ -162,6 +164,11 @@ fn read_as(path: &Path, shown: &str, options: &Options, want: Want) -> Result<Fi
         _ => return Err(format::not_built(format, shown).into()),
     };
     for table in &mut read.tables {
+        for channel in &mut table.channels {
+            let stated = channel.unit.as_deref();
+            let of_name = stated.and_then(|stated| text::unit_of_name(&channel.name, stated));
+            channel.other_unit = conflict(stated, of_name).or(channel.other_unit.take());
+        }
         table.rows = table
             .rows
             .max(table.channels.iter().map(|channel| channel.values.len()).max().unwrap_or(0));
@@ -191,6 +198,13 @@ impl Input<'_> {
         }
         Err(Problem::error("no-numbers", format!("`{}` has no {what}", self.shown)).into())
     }
+}
+
+/// The other one of two units, if both are known and they are not the same.
+fn conflict(unit: Option<&str>, other: Option<String>) -> Option<String> {
+    let (unit, other) = unit.zip(other)?;
+    let known = |text: &str| Unit::parse(text).is_ok();
+    (known(unit) && known(&other) && !Unit::same(unit, &other)).then_some(other)
 }
 
 /// A text without blanks around it, if there is one.

@@ -9,7 +9,7 @@ use indexmap::IndexMap;
 use super::binary::Cursor;
 use super::guard::Failure;
 use super::load::{Budget, MOST_CHANNELS};
-use super::{Channel, Input, NANOSECONDS, Read, Table, filled};
+use super::{Channel, Input, NANOSECONDS, Read, Table, conflict, filled};
 use crate::problem::Problem;
 
 mod scale;
@@ -331,9 +331,9 @@ fn tables(objects: IndexMap<String, Object>) -> Read {
         let text = |name: &str| object.properties.get(name).and_then(|value| filled(&value.text()));
         let time = object.index.is_some_and(|index| index.kind == value::TIME);
         let (waveform, comment) = (facts("wf_"), text("description"));
-        let unit = text("unit_string")
-            .or_else(|| text("NI_UnitDescription"))
-            .or_else(|| time.then(|| "s".into()));
+        let (unit, described) = (text("unit_string"), text("NI_UnitDescription"));
+        let other_unit = conflict(unit.as_deref(), described.clone());
+        let unit = unit.or(described).or_else(|| time.then(|| "s".into()));
         if let Err(why) = scale::apply(&object.properties, &mut object.values) {
             object.left_out = Some(why);
         }
@@ -351,7 +351,7 @@ fn tables(objects: IndexMap<String, Object>) -> Read {
             table.facts = waveform;
         }
         let Object { values, since, .. } = object;
-        table.channels.push(Channel { name, unit, comment, values, since });
+        table.channels.push(Channel { name, unit, other_unit, comment, values, since });
     }
     for (group, Group { tables, facts, mut left_out }) in groups {
         let several = tables.len() > 1;

@@ -8,7 +8,7 @@ use calamine::{DataRef, Reader, Xlsx, XlsxError};
 use super::guard::Failure;
 use super::load::{Budget, most_unpacked};
 use super::text::{most_are_units, name_and_unit, stamps_from_first, unbracketed};
-use super::{Channel, Input, Options, Read, Table, filled};
+use super::{Channel, Input, Options, Read, Table, conflict, filled};
 use crate::problem::Problem;
 
 /// Columns of a sheet.
@@ -200,7 +200,9 @@ fn table(
             || (format!("column {}", letters(column)), None),
             |text| name_and_unit(&text),
         );
-        let unit = heading(units, column).and_then(|text| unbracketed(&text)).or(unit);
+        let of_row = heading(units, column).and_then(|text| unbracketed(&text));
+        let other_unit = conflict(of_row.as_deref(), unit.clone());
+        let unit = of_row.or(unit);
         let Some((values, since)) = values(options, &cells).map_err(|(at, text)| {
             let cell = format!("{}{}", letters(column), data[at].0 + 1);
             let says = format!(
@@ -216,6 +218,7 @@ fn table(
         table.channels.push(Channel {
             name: called,
             unit: if since.is_some() { Some("s".into()) } else { unit },
+            other_unit: other_unit.filter(|_| since.is_none()),
             comment: since.map(|_| "seconds from the first time".into()),
             values,
             since,

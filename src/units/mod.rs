@@ -53,6 +53,13 @@ impl Unit {
         }
     }
 
+    /// Whether two texts are the same unit: the same words, or known units of the same size.
+    pub fn same(one: &str, other: &str) -> bool {
+        let size =
+            |text: &str| Self::parse(text.trim()).ok().map(|unit| (unit.dimension, unit.factor));
+        one.trim() == other.trim() || size(one).is_some_and(|one| Some(one) == size(other))
+    }
+
     pub fn to_si(&self, number: f64) -> f64 {
         number * self.factor
     }

@@ -202,7 +202,7 @@ pub fn headings_of(
         let from = line.len();
         line.push_str(written);
         match (name_and_unit(written).1, told) {
-            (Some(range), Some(told)) if !same_unit(&written[range.clone()], told) => {
+            (Some(range), Some(told)) if !Unit::same(&written[range.clone()], told) => {
                 conflict = conflict.or(Some((at, told.to_string())));
             }
             (None, Some(told)) => line += &format!(" [{told}]"),
@@ -228,12 +228,6 @@ pub fn headings_of(
         .help("keep one of them, or make both the same"));
     }
     duplicates(&headings).into_iter().next().map_or(Ok(headings), Err)
-}
-
-fn same_unit(a: &str, b: &str) -> bool {
-    let parsed =
-        |text: &str| Unit::parse(text.trim()).ok().map(|unit| (unit.dimension, unit.factor));
-    a.trim() == b || parsed(a).is_some_and(|a| Some(a) == parsed(b))
 }
 
 pub fn damaged(shown: &str, why: &str) -> Problem {

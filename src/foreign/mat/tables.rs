@@ -4,7 +4,7 @@
 //! structs with a name and a vector each; and structs of these. Other variables are facts, if they
 //! are short, or left out.
 
-use super::super::{Channel, Read, Table, filled};
+use super::super::{Channel, Read, Table, conflict, filled};
 use super::{Fields, Value};
 use crate::problem::Problem;
 
@@ -238,9 +238,11 @@ fn vectors(fields: Fields, units: Option<&Value>, table: &mut Table) {
             texts.find_map(|(_, value)| value.text()).map(|text| text.trim().to_string())
         };
         let ends = ["_unit", "_units", "_einheit"].map(|end| format!("{name}{end}"));
-        let stated = texts(&of_struct, &|field| field == name)
-            .or_else(|| texts(&beside, &|field| ends.iter().any(|end| end == field)));
-        stated.filter(|unit| !unit.is_empty())
+        let of_struct = texts(&of_struct, &|field| field == name).and_then(|unit| filled(&unit));
+        let beside = texts(&beside, &|field| ends.iter().any(|end| end == field));
+        let beside = beside.and_then(|unit| filled(&unit));
+        let other_unit = conflict(of_struct.as_deref(), beside.clone());
+        (of_struct.or(beside), other_unit)
     };
     let mut rest = Vec::new();
     for (name, value) in fields {
@@ -253,8 +255,9 @@ fn vectors(fields: Fields, units: Option<&Value>, table: &mut Table) {
                 for (index, part) in values.chunks(rows).enumerate() {
                     let name =
                         if several { format!("{name}({})", index + 1) } else { name.clone() };
-                    let (unit, values) = (unit_of(&name), part.to_vec());
-                    table.channels.push(Channel { name, unit, values, ..Channel::default() });
+                    let ((unit, other_unit), values) = (unit_of(&name), part.to_vec());
+                    let channel = Channel { name, unit, other_unit, values, ..Channel::default() };
+                    table.channels.push(channel);
                 }
             }
             other => rest.push((name, other)),

@@ -2,7 +2,7 @@
 
 use super::dialect::{Line, comment};
 use super::{Text, at};
-use crate::foreign::filled;
+use crate::foreign::{conflict, filled};
 use crate::problem::Problem;
 use crate::source::Span;
 use crate::units::Unit;
@@ -12,6 +12,8 @@ use crate::units::Unit;
 pub struct Heading {
     pub name: String,
     pub unit: Option<String>,
+    /// Another unit that is stated of it.
+    pub other_unit: Option<String>,
     pub comment: Option<String>,
     pub span: Option<Span>,
 }
@@ -75,7 +77,9 @@ pub fn read(text: &Text<'_>, before: &[Line<'_>]) -> Result<Header, Problem> {
     }
     if let Some(units) = units {
         for (column, cell) in header.columns.iter_mut().zip(text.cells(units.text)) {
-            column.unit = unbracketed(&units.text[cell]).or(column.unit.take());
+            let (of_line, of_name) = (unbracketed(&units.text[cell]), column.unit.take());
+            column.other_unit = conflict(of_line.as_deref(), of_name.clone());
+            column.unit = of_line.or(of_name);
         }
     }
     let used = [names, units].map(|line| line.map(|line| line.number));
@@ -177,6 +181,7 @@ pub fn name_and_unit(text: &str) -> (String, Option<String>) {
     if let Some((name, rest)) = text.rsplit_once('[')
         && let Some(unit) = rest.strip_suffix(']')
         && !name.trim().is_empty()
+        && !is_index(name, unit)
     {
         return (name.trim().to_string(), unbracketed(unit));
     }
@@ -192,6 +197,21 @@ pub fn name_and_unit(text: &str) -> (String, Option<String>) {
     (text.to_string(), None)
 }
 
+/// `r[1]`, `a[2,3]`: an index stands right after the name, and belongs to it.
+fn is_index(name: &str, inside: &str) -> bool {
+    let digits = inside.chars().all(|c| c.is_ascii_digit() || matches!(c, ',' | ' ' | ':'));
+    digits && !inside.trim().is_empty() && !name.ends_with(char::is_whitespace)
+}
+
+/// The unit at the end of a name that is kept as it is: in square brackets, or in round ones if it
+/// is of the dimension of another unit that is stated.
+pub fn unit_of_name(name: &str, stated: &str) -> Option<String> {
+    let unit = name_and_unit(name).1?;
+    let dimension = |text: &str| Unit::parse(text).ok().map(|unit| unit.dimension);
+    let square = name.trim_end().ends_with(']');
+    (square || dimension(&unit) == dimension(stated)).then_some(unit)
+}
+
 /// The headings in the cells of a line, or of its end.
 fn headings(text: &Text<'_>, line: Line<'_>, end: &str) -> Vec<Heading> {
     let start = line.text.len() - end.len();
@@ -199,7 +219,7 @@ fn headings(text: &Text<'_>, line: Line<'_>, end: &str) -> Vec<Heading> {
         let (name, unit) = name_and_unit(&end[cell.clone()]);
         let name = if name.is_empty() { format!("column {}", index + 1) } else { name };
         let span = at(text.shown, line, start + cell.start..start + cell.end);
-        Heading { name, unit, comment: None, span: Some(span) }
+        Heading { name, unit, span: Some(span), ..Heading::default() }
     };
     text.cells(end).into_iter().enumerate().map(heading).collect()
 }
@@ -227,7 +247,7 @@ fn listed(text: &Text<'_>, comments: &[(Line<'_>, &str)]) -> Option<Vec<Heading>
         }
         let start = line.text.rfind(rest).unwrap_or(0);
         let span = Some(at(text.shown, *line, start..start + rest.len()));
-        found.push(Heading { name, unit, comment: None, span });
+        found.push(Heading { name, unit, span, ..Heading::default() });
     }
     (found.len() == columns).then_some(found)
 }
@@ -261,6 +281,10 @@ mod tests {
             ("ST1 Y (re)", ("ST1 Y (re)", None)),
             ("[kN]", ("[kN]", None)),
             ("x []", ("x", None)),
+            ("r[1]", ("r[1]", None)),
+            ("a[1,2]", ("a[1,2]", None)),
+            ("a[2] [m]", ("a[2]", Some("m"))),
+            ("slip [1]", ("slip", Some("1"))),
         ] {
             assert_eq!(name_and_unit(text), owned(parts), "{text}");
         }

@@ -18,9 +18,9 @@ use std::ops::Range;
 
 pub use dialect::{DecimalMark, Separator};
 use dialect::{Dialect, Line, is_row};
-pub use header::name_and_unit;
 #[cfg(feature = "foreign")]
 pub use header::{most_are_units, unbracketed};
+pub use header::{name_and_unit, unit_of_name};
 pub use stamps::DateOrder;
 #[cfg(feature = "foreign")]
 pub use values::stamps_from_first;

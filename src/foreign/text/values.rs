@@ -167,8 +167,12 @@ fn finish(
         _ => None,
     });
     for (index, (column, heading)) in columns.into_iter().zip(headings).enumerate() {
+        let name = heading.name.clone();
         let channel = match column {
-            Column::Numbers(values) => Ok((values, None, heading.unit, heading.comment)),
+            Column::Numbers(values) => {
+                let Heading { unit, other_unit, comment, .. } = heading;
+                Ok(Channel { values, unit, other_unit, comment, ..Channel::default() })
+            }
             Column::Stamps(_) if days.as_ref().is_some_and(|(day, _)| *day == index) => {
                 Err("its dates are part of the times".into())
             }
@@ -183,17 +187,15 @@ fn finish(
                     }
                 }
                 let (values, since) = times(text, rows, &stamps, of_dates, &heading)?;
-                let comment = "seconds from the first time stamp".to_string();
-                Ok((values, since, Some("s".to_string()), Some(comment)))
+                let comment = Some("seconds from the first time stamp".to_string());
+                let unit = Some("s".to_string());
+                Ok(Channel { values, since, unit, comment, ..Channel::default() })
             }
             Column::Text(first) => Err(format!("its cells are text, such as `{first}`")),
             Column::Unknown(_) => Err("its cells are empty".into()),
         };
-        let name = heading.name;
         match channel {
-            Ok((values, since, unit, comment)) => {
-                table.channels.push(Channel { name, unit, comment, values, since })
-            }
+            Ok(channel) => table.channels.push(Channel { name, ..channel }),
             Err(why) => table.left_out.push((name, why)),
         }
     }

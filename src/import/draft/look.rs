@@ -39,12 +39,18 @@ pub fn look(table: &Table) -> Vec<Look> {
             let increases = there.len() > 1
                 && there.len() == channel.values.len()
                 && there.windows(2).all(|pair| pair[1] > pair[0]);
-            let unit_text = channel.unit.as_deref().unwrap_or("").trim().to_string();
+            // Of two units, a person decides.
+            let unit = channel.unit.as_deref().filter(|_| channel.other_unit.is_none());
+            let unit_text = unit.unwrap_or("").trim().to_string();
+            let units = channel.unit.as_ref().zip(channel.other_unit.as_ref());
+            let units = units.map(|(one, other)| format!("units {one} and {other}"));
             Look {
                 name: channel.name.clone(),
                 unit: Unit::parse(&unit_text).ok(),
                 unit_text,
-                comment: channel.comment.clone().filter(|comment| !comment.trim().is_empty()),
+                comment: units
+                    .or_else(|| channel.comment.clone())
+                    .filter(|text| !text.trim().is_empty()),
                 rate: table.rate,
                 rows: channel.values.len(),
                 missing: channel.values.len() - there.len(),

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::recording::{Recording, nearest_or_first};
+use super::recording::{Recording, nearest_or_first, two_units};
 use super::short;
 use crate::data::checks::{self, Steps};
 use crate::foreign::{Channel, NANOSECONDS, Table};
@@ -146,9 +146,8 @@ fn clock(recording: &Recording<'_>, table: &Table, alone: bool) -> Result<Clock,
     let zero;
     let mut times: Vec<f64> = match (found, time.from.0.first()) {
         (Some((name, channel)), _) => {
-            let unit = time_unit(recording, channel).map_err(|has| {
-                let says = format!("{file}: the time `{}` has {has}", name.value);
-                error("unit-missing", says, &name.span)
+            let unit = time_unit(recording, channel).map_err(|(code, says)| {
+                error(code, says, &name.span)
                     .help(format!("write its unit: `time: {{from: {}, unit: s}}`", name.value))
             })?;
             factor = unit.factor;
@@ -221,16 +220,21 @@ pub fn mean_rate(times: &[f64]) -> f64 {
 /// The unit of a channel of time: as stated, else as the file has it.
 ///
 /// # Errors
-/// What it has in place of a unit of time.
-fn time_unit(recording: &Recording<'_>, channel: &Channel) -> Result<Unit, String> {
+/// Code and text: it has none of time, or two.
+fn time_unit(recording: &Recording<'_>, channel: &Channel) -> Result<Unit, (&'static str, String)> {
+    if let Some(unit) = &recording.side.time.unit {
+        return Ok(unit.value.clone());
+    }
+    if let Some(says) = two_units(channel, recording.shown) {
+        return Err(("unit-conflict", says));
+    }
     let text = channel.unit.as_deref().map(str::trim).filter(|text| !text.is_empty());
-    let stated = recording.side.time.unit.as_ref().map(|unit| unit.value.clone());
-    let unit = stated
-        .or_else(|| recording.stated_unit(text?))
-        .or_else(|| Unit::parse(text?).ok())
-        .filter(|unit| unit.dimension == Dimension::TIME);
-    let has = || text.map_or_else(|| "no unit".into(), |text| format!("the unit `{text}`"));
-    unit.ok_or_else(has)
+    let unit = text.and_then(|text| recording.stated_unit(text).or_else(|| Unit::parse(text).ok()));
+    unit.filter(|unit| unit.dimension == Dimension::TIME).ok_or_else(|| {
+        let has = text.map_or_else(|| "no unit".into(), |text| format!("the unit `{text}`"));
+        let says = format!("`{}`: the time `{}` has {has}", recording.shown, channel.name);
+        ("unit-missing", says)
+    })
 }
 
 /// None of the names of the time is in a table.

@@ -100,17 +100,21 @@ impl<'a> Recording<'a> {
                 None => Ok(unit.value.clone()),
             };
         }
+        let write = |problem: Problem| {
+            let example = wanted.map_or("...", |unit| unit.text.as_str());
+            let (name, from) = (&map.name.value, &name.value);
+            problem.help(format!("write it: `{name}: {{from: {from}, unit: {example}}}`"))
+        };
+        if let Some(says) = two_units(channel, self.shown) {
+            return Err(write(error("unit-conflict", says, &name.span)));
+        }
         let text = channel.unit.as_deref().map(str::trim).filter(|text| !text.is_empty());
         let Some(text) = text else {
             if wanted.is_some_and(|wanted| wanted.dimension == Dimension::ONE) {
                 return Ok(Unit::one());
             }
             let says = format!("`{}` states no unit of `{}`", self.shown, name.value);
-            let example = wanted.map_or("...", |unit| unit.text.as_str());
-            return Err(error("unit-missing", says, &name.span).help(format!(
-                "write it: `{}: {{from: {}, unit: {example}}}`",
-                map.name.value, name.value
-            )));
+            return Err(write(error("unit-missing", says, &name.span)));
         };
         let unit = self.stated_unit(text).map_or_else(|| Unit::parse(text), Ok);
         let unit = unit.map_err(|unknown| {
@@ -179,6 +183,12 @@ impl<'a> Recording<'a> {
             }
         }
     }
+}
+
+/// That a file states two units of a channel.
+pub fn two_units(channel: &Channel, shown: &str) -> Option<String> {
+    let (one, other) = channel.unit.as_ref().zip(channel.other_unit.as_ref())?;
+    Some(format!("`{shown}` states two units of `{}`: {one} and {other}", channel.name))
 }
 
 /// Names the channel that may be meant, else the first ones of the file.

@@ -84,14 +84,17 @@ fn an_unknown_formula_leaves_out_its_channel() {
     assert!(name == "Y" && why.contains("its conversion is not read"), "{name}: {why}");
 }
 
-/// Imports a mapping of files of the folder; the record of the only section by its columns.
+/// The columns of a record: heading and values.
+type Columns = Vec<(String, Vec<f64>)>;
+
+/// Imports a mapping of files of the folder; the record of the only section.
 #[track_caller]
-fn imported(side: &str) -> Vec<(String, Vec<f64>)> {
+fn imported(side: &str) -> Columns {
     let (problems, record) = tried(side);
     record.unwrap_or_else(|| panic!("{}", problems.render(false)))
 }
 
-fn tried(side: &str) -> (Problems, Option<Vec<(String, Vec<f64>)>>) {
+fn tried(side: &str) -> (Problems, Option<Columns>) {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("out");
     let text = format!("name: x\nsections: [S]\nmeasurement:\n{side}");
@@ -99,7 +102,7 @@ fn tried(side: &str) -> (Problems, Option<Vec<(String, Vec<f64>)>>) {
     let columns = || {
         let text = std::fs::read_to_string(out.join("measurement/S.csv")).expect("a record");
         let mut rows = text.lines().map(|line| line.split(','));
-        let mut columns: Vec<(String, Vec<f64>)> =
+        let mut columns: Columns =
             rows.next().expect("names").map(|name| (name.to_string(), Vec::new())).collect();
         for row in rows {
             for ((_, values), cell) in columns.iter_mut().zip(row) {
@@ -173,4 +176,39 @@ fn groups_with_the_same_start_are_one_record() {
         assert_eq!((columns[0].1.len(), at(0, 1), at(1, 399)), (400, 0.005, 179.8));
         assert!((at(2, 1) - 0.031_410_76).abs() < 1e-8 && (at(3, 1) - 0.031_410_76).abs() < 1e-8);
     }
+}
+
+/// kN in the name and N beside it, or in two places of a MATLAB file: refused in every format, and
+/// read where the mapping says which.
+#[test]
+fn two_units_of_a_channel_are_a_question() {
+    for (file, time, name) in [
+        ("two-units.csv", "t", "Y"),
+        ("two-units.xlsx", "t", "Y"),
+        ("two-units.tdms", "t", "Y [kN]"),
+        ("two-units.mf4", "time", "Y (kN)"),
+        ("two-units.mat", "t", "Y"),
+        ("two-units.arrow", "t", "Y [kN]"),
+        ("two-units.parquet", "t", "Y [kN]"),
+    ] {
+        let side = |more: &str| {
+            format!(
+                "  files: {file}\n  time: {time}\n  channels: {{Y: {{from: \"{name}\"{more}}}}}\n"
+            )
+        };
+        let text = refused(&side(""), "unit-conflict");
+        assert!(text.contains(&format!("two units of `{name}`: N and kN")), "{file}: {text}");
+        let columns = imported(&side(", unit: kN"));
+        assert_eq!((columns[1].0.as_str(), columns[1].1[3]), ("Y [kN]", 3.0), "{file}");
+    }
+    refused("  files: two-times.csv\n  time: t\n  channels: {Y: Y}\n", "unit-conflict");
+}
+
+/// An index in brackets is a part of the name, as programs for Modelica and FMI write it.
+#[test]
+fn an_index_is_a_part_of_the_name() {
+    let columns = imported(
+        "  files: index-in-name.csv\n  time: {from: time, unit: s}\n  channels: {x: {from: \"r[2]\", unit: m}}\n",
+    );
+    assert_eq!(columns[1].1[..4], [0.0, -0.1, -0.2, -0.3]);
 }
