@@ -14,15 +14,13 @@ impl<'a> OfLimit<'a> {
     /// The result nearest to its limit or farthest beyond: one that fails before one that holds
     /// before one that is not assessed.
     pub fn decisive(&self) -> &'a StatisticResult {
-        let rank = |one: &StatisticResult| match one.holds {
-            Some(false) => (2, one.normalised.unwrap_or(f64::INFINITY)),
-            Some(true) => (1, one.normalised.unwrap_or(0.0)),
-            None => (0, 0.0),
+        let rank = |one: &StatisticResult| {
+            let (value, limit) = one.value.zip(one.limit)?;
+            Some(one.direction.badness(value, limit, one.holds?))
         };
         let mut decisive = self.results[0];
         for one in &self.results[1..] {
-            let (before, now) = (rank(decisive), rank(one));
-            if now.0 > before.0 || now.0 == before.0 && now.1 > before.1 {
+            if rank(one) > rank(decisive) {
                 decisive = one;
             }
         }

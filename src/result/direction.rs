@@ -48,6 +48,14 @@ impl Direction {
         share.is_finite().then_some(share)
     }
 
+    /// What the worst of several values has most of: one that does not meet its limit is worse than
+    /// any that does, then the larger share counts, then, where shares are equal or there are none,
+    /// how far the value has come towards its limit and beyond.
+    pub fn badness(self, value: f64, limit: f64, holds: bool) -> (bool, f64, f64) {
+        let share = self.share(value, limit).unwrap_or(if holds { 0.0 } else { f64::INFINITY });
+        (!holds, share, -self.distance(value, limit))
+    }
+
     /// How far a value is from its limit, in their unit; below zero where it does not meet it.
     pub fn distance(self, value: f64, limit: f64) -> f64 {
         match self {

@@ -24,3 +24,4 @@ mod shipped_numbers;
 mod slurm;
 mod values;
 mod verdicts;
+mod written_rule_sets;

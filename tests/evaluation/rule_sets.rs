@@ -53,7 +53,7 @@ fn channels() -> Vec<(String, &'static str, i64, Vec<Wave>)> {
 }
 
 /// A triangle wave of whole numbers.
-fn triangle(i: i64, quarter: i64, size: i64) -> i64 {
+pub fn triangle(i: i64, quarter: i64, size: i64) -> i64 {
     let r = i.rem_euclid(4 * quarter);
     let v = if r <= quarter {
         r

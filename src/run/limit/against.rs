@@ -55,6 +55,18 @@ mod tests {
         assert_eq!(against(-1.0, 0.0, AtLeast), (None, false));
     }
 
+    /// Shares say nothing of values below a least value of zero, nor of those above it.
+    #[test]
+    fn the_worst_value_is_the_farthest_beyond() {
+        let worse = |a: f64, b: f64, bound: f64| {
+            let of = |value| AtLeast.badness(value, bound, against(value, bound, AtLeast).1);
+            of(a) > of(b)
+        };
+        assert!(worse(-3.6, -2.6, 0.0) && !worse(-2.6, -3.6, 0.0));
+        assert!(worse(1.0, 2.0, 0.0) && worse(-0.1, 2.0, 0.0));
+        assert!(worse(-0.5, -0.1, 0.8) && worse(-0.1, 0.1, 0.8) && worse(0.1, 0.2, 0.8));
+    }
+
     #[test]
     fn an_interval_with_the_limit_inside_decides_nothing() {
         assert!(spans((0.9, 1.1), 1.0, Magnitude));

@@ -309,7 +309,7 @@ impl<'a> Judging<'a> {
         result: &mut StatisticResult,
         own: &mut Vec<(&'a Row, f64, Option<f64>)>,
     ) -> Result<bool, Reason> {
-        let mut worst: Option<(bool, f64, f64, f64)> = None;
+        let mut worst: Option<((bool, f64, f64), f64, f64)> = None;
         let mut all_hold = true;
         for member in members {
             let bound = self
@@ -319,14 +319,12 @@ impl<'a> Judging<'a> {
             let (normalised, holds) = against(value, bound, limit.direction);
             own.push((member.row, bound, normalised));
             all_hold &= holds;
-            // A value that fails is worse than any that passes, also where no share can be
-            // computed.
-            let share = normalised.unwrap_or(if holds { 0.0 } else { f64::INFINITY });
-            if worst.is_none_or(|(held, before, _, _)| (!holds, share) > (!held, before)) {
-                worst = Some((holds, share, value, bound));
+            let badness = limit.direction.badness(value, bound, holds);
+            if worst.is_none_or(|worst| badness > worst.0) {
+                worst = Some((badness, value, bound));
             }
         }
-        let (_, share, value, bound) = worst.ok_or(Reason::NoValue)?;
+        let ((_, share, _), value, bound) = worst.ok_or(Reason::NoValue)?;
         result.value = Some(self.quantity.unit.from_si(value));
         result.limit = Some(self.quantity.unit.from_si(bound));
         result.normalised = share.is_finite().then_some(share);

@@ -25,12 +25,12 @@ signal lv_axle "Axle sum of |L/V|"
   in  -
 
 signal over_single "1 where |L/V| is above its limit, otherwise 0"
-  is  0.5 + 0.5 * sign(|YQ| - lv_limit)
+  is  1 when |YQ| >= lv_limit, otherwise 0
   at  each wheelset and side
   in  -
 
 signal over_sum "1 where the axle sum is above its limit"
-  is  0.5 + 0.5 * sign(lv_axle - sum_limit)
+  is  1 when lv_axle >= sum_limit, otherwise 0
   at  each wheelset
   in  -
 

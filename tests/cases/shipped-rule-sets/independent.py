@@ -79,20 +79,20 @@ def write(folder):
     (folder / "sections.csv").write_text(table)
 
 
-C = (math.sqrt(2) - 1) ** (1 / 8)  # order 4: both passes together are at -3 dB at the cut-off
+def low(x, f, rate=RATE, order=4):
+    """Both passes together are at -3 dB at the cut-off."""
+    c = (math.sqrt(2) - 1) ** (1 / (2 * order))
+    design = rate / math.pi * math.atan(math.tan(math.pi * f / rate) / c)
+    return sosfiltfilt(butter(order, design, fs=rate, output="sos"), x)
 
 
-def low(x, f):
-    design = RATE / math.pi * math.atan(math.tan(math.pi * f / RATE) / C)
-    return sosfiltfilt(butter(4, design, fs=RATE, output="sos"), x)
-
-
-def band(x, a, b):
-    a, b = (math.tan(math.pi * f / RATE) for f in (a, b))
-    width, centre = (b - a) / C, a * b
+def band(x, a, b, rate=RATE, order=4):
+    c = (math.sqrt(2) - 1) ** (1 / (2 * order))
+    a, b = (math.tan(math.pi * f / rate) for f in (a, b))
+    width, centre = (b - a) / c, a * b
     a = (math.sqrt(width * width + 4 * centre) - width) / 2
-    design = [RATE / math.pi * math.atan(w) for w in (a, a + width)]
-    return sosfiltfilt(butter(4, design, "bandpass", fs=RATE, output="sos"), x)
+    design = [rate / math.pi * math.atan(w) for w in (a, a + width)]
+    return sosfiltfilt(butter(order, design, "bandpass", fs=rate, output="sos"), x)
 
 
 def windows(x, at, width, value):
@@ -152,30 +152,32 @@ def stationary(c, x, t):
     return {("load", w): c["Q_" + w].mean() / c["Q_level_" + w].mean() for w in WHEELS}
 
 
-def transfer(x, numerator, denominator):
+def transfer(x, numerator, denominator, rate=RATE):
     """Bilinear, one pass from the steady state of the first sample; highest power of s first."""
-    b, a = bilinear(numerator, denominator, RATE)
+    b, a = bilinear(numerator, denominator, rate)
     return lfilter(b, a, x, zi=lfilter_zi(b, a) * x[0])[0]
 
 
-def warped(f):
-    return 2 * RATE * math.tan(math.pi * f / RATE)
+def warped(f, rate=RATE):
+    return 2 * rate * math.tan(math.pi * f / rate)
 
 
-def pair(f, quality):
-    return [1 / warped(f) ** 2, 1 / (quality * warped(f)), 1]
+def pair(w, quality):
+    return [1 / w**2, 1 / (quality * w), 1]
 
 
-def sperling(x, gain):
-    p = warped(0.7236876838804673)
-    x = transfer(x, [gain / p, 0], [1 / p, 1])
-    return transfer(x, [1 / warped(5.52955694427682), 1], pair(6.127742397935874, 0.9006768282515845))
+def sperling(x, gain, rate=RATE):
+    p, z = warped(0.7236876838804673, rate), warped(5.52955694427682, rate)
+    x = transfer(x, [gain / p, 0], [1 / p, 1], rate)
+    return transfer(x, [1 / z, 1], pair(warped(6.127742397935874, rate), 0.9006768282515845), rate)
 
 
-def sickness(x):
-    x = transfer(x, [1 / warped(0.08) ** 2, 0, 0], pair(0.08, 0.70711))
-    x = transfer(transfer(x, [1], pair(0.63, 0.70711)), [1], pair(0.25, 0.86))
-    return transfer(x, [k * 0.0625**2 / 0.1**2 for k in pair(0.0625, 0.8)], pair(0.1, 0.8))
+def sickness(x, rate=RATE):
+    def at(f, quality):
+        return pair(warped(f, rate), quality)
+    x = transfer(x, [1 / warped(0.08, rate) ** 2, 0, 0], at(0.08, 0.70711), rate)
+    x = transfer(transfer(x, [1], at(0.63, 0.70711), rate), [1], at(0.25, 0.86), rate)
+    return transfer(x, [k * 0.0625**2 / 0.1**2 for k in at(0.0625, 0.8)], at(0.1, 0.8), rate)
 
 
 def cut(v):
