@@ -130,6 +130,7 @@ pub fn certification(compiled: &Compiled, about: &About, outcome: Outcome) -> Ce
         draft: false,
         deviations,
         verdicts: judged.verdicts,
+        drawn: judged.drawn,
         quantities: judged.quantities,
         sections: outcome.sections,
         reported: judged.reported,

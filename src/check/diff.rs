@@ -206,6 +206,8 @@ fn relaxed(old: Option<&Field>, new: Option<&Field>) -> Option<bool> {
             Some(rank(&after)? < rank(&before)?)
         }
         OPTIONAL => Some(before == NOT_ASSESSABLE && after != NOT_ASSESSABLE),
+        // Draws of the sections make it neither stricter nor weaker for certain.
+        "validated" | "holds" if after.starts_with(EVERY_LIMIT) && after != EVERY_LIMIT => None,
         "validated" | "holds" => Some(before == EVERY_LIMIT && after != EVERY_LIMIT),
         "removed" | "minimum" | "minimum sections" | "minimum length" | "minimum signals"
         | "minimum pairs" => {

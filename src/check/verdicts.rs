@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::evaluate::is_whole;
 use super::outcomes::{NEITHER, bare, ends, outcomes_told, says_passed};
 use super::prelude::*;
-use crate::syntax::phrase::{Outcome, OverVerdicts, Verdict as Written};
+use crate::syntax::phrase::{Needed, Outcome, OverVerdicts, Verdict as Written};
 
 /// Words of the verdict without a name.
 const VALIDATED: [&str; 2] = ["validated", "not validated"];
@@ -18,6 +18,11 @@ const KINDS: [&str; 3] = ["measured", "simulated", "compared"];
 struct Names {
     names: Vec<String>,
     first: usize,
+}
+
+/// Every limit of some quantities.
+fn every(quantities: Vec<usize>) -> Decision {
+    Decision::Limits { rule: Rule::EveryLimit, quantities, draws: None }
 }
 
 impl Checker<'_> {
@@ -66,7 +71,7 @@ impl Checker<'_> {
         let decision = match (outcomes, field) {
             (Some(grades), _) => Decision::Ordered(grades),
             (_, Some(field)) => self.decision(field, all, None, quantities, names),
-            _ => Decision::Limits { rule: Rule::EveryLimit, quantities: all },
+            _ => every(all),
         };
         VerdictRule {
             name: None,
@@ -126,7 +131,7 @@ impl Checker<'_> {
                     problem!("verdict-rule", block, "verdict `{}` has {has}", block.name_text())
                         .help(help),
                 );
-                Decision::Limits { rule: Rule::EveryLimit, quantities: about }
+                every(about)
             }
         };
         VerdictRule {
@@ -269,7 +274,7 @@ impl Checker<'_> {
         names: &Names,
     ) -> Decision {
         match from_pest::verdict(&field.value, self.problems) {
-            None => Decision::Limits { rule: Rule::EveryLimit, quantities: about },
+            None => every(about),
             Some(written) => self.decided(written, of, about, quantities, names),
         }
     }
@@ -283,28 +288,56 @@ impl Checker<'_> {
         quantities: &[Quantity],
         names: &Names,
     ) -> Decision {
-        let every = |quantities| Decision::Limits { rule: Rule::EveryLimit, quantities };
-        let (count, of_limits) = match written {
-            Written::EveryLimit => return every(about),
-            Written::AtLeast { count, of_limits } => (count, of_limits),
+        let (needed, draws) = match written {
+            Written::Limits { needed, draws } => (needed, draws),
             Written::Over(over) => {
                 self.needs_limits(of, "this rule uses other verdicts");
                 return self.over(&over, names).map_or_else(|| every(about), Decision::Verdicts);
             }
         };
-        let (there, what) = match (of_limits, of) {
-            (true, _) => {
-                (about.iter().map(|&at| quantities[at].limits_written()).sum::<usize>(), "limits")
-            }
-            (false, Some(_)) => (about.len(), "quantities"),
-            (false, None) => (self.blocks_of("quantity").count(), "quantities"),
+        let rule = needed.and_then(|Needed { count, of_limits }| {
+            let (there, what) = match (of_limits, of) {
+                (true, _) => (
+                    about.iter().map(|&at| quantities[at].limits_written()).sum::<usize>(),
+                    "limits",
+                ),
+                (false, Some(_)) => (about.len(), "quantities"),
+                (false, None) => (self.blocks_of("quantity").count(), "quantities"),
+            };
+            let wanted = self.how_many(&count, there, what)?;
+            Some(if of_limits {
+                Rule::AtLeastLimits(wanted)
+            } else {
+                Rule::AtLeastQuantities(wanted)
+            })
+        });
+        let draws = draws.and_then(|share| self.of_draws(&share, &about, quantities));
+        Decision::Limits { rule: rule.unwrap_or(Rule::EveryLimit), quantities: about, draws }
+    }
+
+    /// The share of draws in which a rule is to hold.
+    fn of_draws(
+        &mut self,
+        share: &Phrase,
+        about: &[usize],
+        quantities: &[Quantity],
+    ) -> Option<f64> {
+        let limits = about.iter().flat_map(|&at| &quantities[at].limits);
+        let of_estimate = |limit: &Limit| match &limit.estimate.kind {
+            EstimateKind::Of(of) => of.has_bound(),
+            EstimateKind::Each => false,
         };
-        let rule = match self.how_many(&count, there, what) {
-            Some(wanted) if of_limits => Rule::AtLeastLimits(wanted),
-            Some(wanted) => Rule::AtLeastQuantities(wanted),
-            None => Rule::EveryLimit,
-        };
-        Decision::Limits { rule, quantities: about }
+        let twice = limits.map(|limit| limit.as_ref());
+        if let Some(limit) = twice.into_iter().find(|one| of_estimate(one) || one.bound.has_bound())
+        {
+            let says = "the draws and this confidence interval count the scatter between the \
+                        sections twice";
+            let problem = error("interval-of-draws", says, &limit.span);
+            let help = "limit the statistic itself (`std` in place of `upper 95 % of std`), or \
+                        leave out `in ... of draws`";
+            return self.refuse(problem.also(share, "the rule of the verdict").help(help));
+        }
+        self.confidence(share)
     }
 
     /// A whole number, not larger than the number of things there are.

@@ -145,6 +145,11 @@ fn summary(found: &Certification, console: &Console) -> Lines {
     for reason in &found.reasons {
         out += &format!("  {}\n", reason.text());
     }
+    // Of a rule that does not hold, a reason tells it.
+    for drawn in found.drawn.iter().filter(|drawn| drawn.holds() == Some(true)) {
+        let of = drawn.verdict.as_ref().map_or(String::new(), |name| format!("{name}: "));
+        out += &format!("  {of}{}\n", drawn.text());
+    }
     for verdict in found.verdicts.iter().filter(|verdict| !verdict.overall) {
         let word = console.paint(verdict.word.clone(), verdict.outcome.holds());
         out += &format!("{}: {word}\n", verdict.title);

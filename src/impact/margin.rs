@@ -154,6 +154,6 @@ impl Found<'_> {
             }
         }
         let barred = self.judged.barred.clone();
-        overall(&plan, &Given { barred, quantities: &quantities, fails: all })
+        overall(&plan, &Given { barred, quantities: &quantities, fails: all, sample: None })
     }
 }

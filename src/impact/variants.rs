@@ -8,7 +8,7 @@ use crate::certify::{Compiled, compile};
 use crate::check::Overrides;
 use crate::check::family::Family;
 use crate::compare::of_protocol;
-use crate::problem::{Problems, Severity};
+use crate::problem::{Problem, Problems, Severity};
 
 /// So many rules that touch one part of a verdict are combined in all ways; of more, each alone and
 /// all together. Each combination is a protocol that is checked and judged.
@@ -53,7 +53,17 @@ impl<'a> Variants<'a> {
                 .filter(|one| one.severity == Severity::Error || !again(&one.says))
                 .collect();
             problems.add(new);
-            drop(found.keep(mask, Ok(compiled?)));
+            let compiled = compiled?;
+            if let Some(rule) = compiled.plan.by_draws() {
+                let says = "`impact` puts verdicts together from single limits, and this one is \
+                            decided by draws of the sections";
+                problems.push(Problem::error("impact-verdict", says).at(&rule.span).help(
+                    "compare the texts without `in ... of draws`; `fishplate compare` takes them \
+                     as they are",
+                ));
+                return None;
+            }
+            drop(found.keep(mask, Ok(compiled)));
         }
         Some(found)
     }

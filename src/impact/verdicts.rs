@@ -200,8 +200,10 @@ impl<'a> Verdicts<'a> {
         };
         let all: Vec<(QuantityResult, Vec<Reason>)> = some.iter().map(of).collect::<Option<_>>()?;
         let (quantities, fails): (Vec<_>, Vec<_>) = all.into_iter().unzip();
-        let found =
-            overall(plan, &Given { barred: barred.clone(), quantities: &quantities, fails });
+        let found = overall(
+            plan,
+            &Given { barred: barred.clone(), quantities: &quantities, fails, sample: None },
+        );
         self.known.insert(key, found);
         Some(found)
     }
@@ -226,5 +228,5 @@ pub fn outcome(plan: &Plan, evaluated: Option<&Evaluated>) -> Outcome {
 
 pub fn decided(plan: &Plan, judged: &Judged) -> Outcome {
     let (barred, fails) = (judged.barred.clone(), judged.fails.clone());
-    overall(plan, &Given { barred, quantities: &judged.quantities, fails })
+    overall(plan, &Given { barred, quantities: &judged.quantities, fails, sample: None })
 }

@@ -85,13 +85,31 @@ impl Draws {
     /// # Errors
     /// Fewer than two sites, no draw.
     pub fn new(sites: usize, replicates: usize, seed: u64) -> Result<Self, ClusterError> {
+        Self::within(&[sites], replicates, seed)
+    }
+
+    /// As [`Self::new`], of sites in several strata one after the other, of which `strata` has the
+    /// numbers of sites: each draw has as many of every stratum as there are.
+    ///
+    /// # Errors
+    /// Fewer than two sites in a stratum, no draw.
+    pub fn within(strata: &[usize], replicates: usize, seed: u64) -> Result<Self, ClusterError> {
+        strata.iter().try_for_each(|sites| enough(*sites))?;
+        let sites = strata.iter().sum();
         enough(sites)?;
         if replicates == 0 {
             return Err(ClusterError::NoDraw);
         }
         let mut random = SplitMix64::new(seed);
-        let drawn =
-            (0..sites * replicates).map(|_| (random.share() * sites as f64) as usize).collect();
+        let mut drawn = Vec::with_capacity(sites * replicates);
+        for _ in 0..replicates {
+            let mut first = 0;
+            for &sites in strata {
+                let one = |_| first + (random.share() * sites as f64) as usize;
+                drawn.extend((0..sites).map(one));
+                first += sites;
+            }
+        }
         Ok(Self { sites, drawn })
     }
 

@@ -180,6 +180,7 @@ fn statistics(carried: &Carried, compiled: &Compiled) -> Check {
         reasons: judged.reasons,
         provisional: compiled.plan.values.provisional.clone(),
         verdicts: judged.verdicts,
+        drawn: judged.drawn,
         quantities: judged.quantities,
         zones: judged.zones,
         application: replayed.application,
@@ -188,9 +189,12 @@ fn statistics(carried: &Carried, compiled: &Compiled) -> Check {
     let again = carried.comparable(&again);
     // Reports of the first versions say nothing of values that are to be confirmed.
     let provisional = carried.value.get("provisional").map(|_| "provisional");
+    // So do those of a verdict without draws.
+    let drawn =
+        (!again["drawn"].is_null() || carried.value.get("drawn").is_some()).then_some("drawn");
     let keys =
         ["verdict", "verdict_word", "reasons", "verdicts", "quantities", "zones", "application"];
-    for key in keys.into_iter().chain(provisional) {
+    for key in keys.into_iter().chain(provisional).chain(drawn) {
         let found = compare(value(key), again.get(key).unwrap_or(&Value::Null), key);
         numbers += found.numbers;
         details.extend(found.differences.iter().map(|one| told(one, "follows from the values")));

@@ -43,8 +43,8 @@ pub use kind::{Kind, VerdictWords};
 pub use origin::{FittedTo, ImportedOne, ImportedSide, OriginInfo};
 pub use pair::PairValue;
 pub use parts::{
-    Beyond, Channels, Datum, GivenVerdict, LimitNotMet, OfVehicle, RecordsOf, Sections, ShortZone,
-    Subject, SuspectedFactor, VehicleValue,
+    Beyond, Channels, Datum, GivenVerdict, InDraws, LimitNotMet, OfVehicle, OftenNotMet, RecordsOf,
+    Sections, ShortZone, Subject, SuspectedFactor, VehicleValue,
 };
 pub use quantity::{
     Count, EdgeResult, Figures, GroupRegression, GroupResult, LimitFactor, Outside, QuantityResult,
@@ -122,6 +122,9 @@ pub struct Certification {
     /// The verdicts with a name.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub verdicts: Vec<VerdictResult>,
+    /// Rules of verdicts that were judged in draws of the sections.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub drawn: Vec<InDraws>,
     pub quantities: Vec<QuantityResult>,
     pub sections: Vec<SectionResult>,
     #[serde(default)]

@@ -4,6 +4,8 @@ use indexmap::IndexSet;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::words::{self, Text};
+
 /// A value that holds of one of several vehicles.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct OfVehicle {
@@ -144,4 +146,54 @@ impl Channels {
 pub struct RecordsOf {
     pub records: String,
     pub campaign: Option<String>,
+}
+
+/// A rule of a verdict over limits, judged in draws of the sections.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "code", rename = "drawn")]
+pub struct InDraws {
+    /// Of which verdict; `None` of the one without a name.
+    pub verdict: Option<String>,
+    /// Number of draws in which the rule holds.
+    pub held: usize,
+    /// Number of draws in which it cannot be judged.
+    pub undefined: usize,
+    pub draws: usize,
+    /// In how many of the draws the rule has to hold, %.
+    pub required: f64,
+    /// Number of independent units in each draw.
+    pub units: usize,
+    /// The limit that is not met in most draws; `None` where all are always met.
+    pub most_often: Option<OftenNotMet>,
+}
+
+impl InDraws {
+    /// Relative tolerance for the number of draws that a share requires.
+    const ROUNDING: f64 = 1e-9;
+
+    /// Whether the rule holds in as many draws as required; `None` where that rests on draws in
+    /// which it cannot be judged.
+    pub fn holds(&self) -> Option<bool> {
+        let needed = self.required / 100.0 * self.draws as f64 * (1.0 - Self::ROUNDING);
+        if self.held as f64 >= needed {
+            Some(true)
+        } else if ((self.held + self.undefined) as f64) < needed {
+            Some(false)
+        } else {
+            None
+        }
+    }
+
+    pub fn text(&self) -> Text {
+        words::text(self)
+    }
+}
+
+/// A limit, and the number of draws in which it is not met.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct OftenNotMet {
+    pub quantity: String,
+    pub estimate: String,
+    pub scope: Option<String>,
+    pub draws: usize,
 }

@@ -5,8 +5,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::parts::{
-    Beyond, Channels, Datum, GivenVerdict, LimitNotMet, OfVehicle, RecordsOf, Sections, ShortZone,
-    Subject, SuspectedFactor,
+    Beyond, Channels, Datum, GivenVerdict, InDraws, LimitNotMet, OfVehicle, RecordsOf, Sections,
+    ShortZone, Subject, SuspectedFactor,
 };
 use super::told;
 use crate::words::{self, Text};
@@ -379,6 +379,19 @@ pub enum Reason {
         met: usize,
         minimum: usize,
     },
+    TooFewDraws {
+        drawn: Box<InDraws>,
+    },
+    /// Too few draws in which the rule can be judged.
+    DrawsUndefined {
+        drawn: Box<InDraws>,
+        reason: Box<Self>,
+    },
+    /// A unit that no other can be drawn for, with sections in these zones.
+    TooFewToDraw {
+        zones: Vec<String>,
+    },
+    DrawsNeedValues,
     /// No limit is stated, or none applies; of the whole protocol or of the quantities of a
     /// verdict.
     NoCriterion {

@@ -50,8 +50,9 @@ impl Asked {
     /// each section and signal.
     pub fn ready(&self, opened: &Opened) -> Result<usize, Problems> {
         let (compiled, campaigns) = (&opened.compiled, opened.campaigns());
-        if !matches!(self, Self::Margin(_)) {
-            countable(compiled)?;
+        match self {
+            Self::Margin(_) => judged_once(compiled)?,
+            _ => countable(compiled)?,
         }
         match self {
             Self::Margin(_) => Ok(campaigns.sections() + compiled.plan.parameters.len()),
@@ -138,6 +139,18 @@ pub fn sections_of(
     Ok(Study::new(protocol_info(compiled), campaign, notes, StudyResult::Sections(found)))
 }
 
+/// A margin is found by judging the campaign many times.
+///
+/// # Errors
+/// `study-verdict`: each of them would be thousands of draws.
+fn judged_once(compiled: &Compiled) -> Result<(), Problems> {
+    let Some(rule) = compiled.plan.by_draws() else { return Ok(()) };
+    let says = "a verdict of the protocol is decided by draws of the sections, and a margin would \
+                draw anew for each change";
+    let problem = Problem::error("study-verdict", says).at(&rule.span);
+    Err(Problems(vec![problem.help("study a variant without `in ... of draws`")]))
+}
+
 /// A study counts limits of selections: the overall verdict must rest on limits alone.
 ///
 /// # Errors
@@ -145,6 +158,7 @@ pub fn sections_of(
 pub fn countable(compiled: &Compiled) -> Result<(), Problems> {
     let overall = compiled.plan.overall();
     let why = match &overall.decision {
+        decision if decision.by_draws() => "is decided by draws of the sections",
         Decision::Limits { .. } => return Ok(()),
         Decision::Verdicts(_) => "is over other verdicts",
         Decision::Person(_) => "is judged by a person",

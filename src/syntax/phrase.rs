@@ -348,9 +348,20 @@ pub struct Domain {
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
-    EveryLimit,
-    AtLeast { count: Phrase, of_limits: bool },
+    /// `every limit holds`, or so many quantities or limits; of the sections as they are, or in a
+    /// share of draws of them.
+    Limits {
+        needed: Option<Needed>,
+        draws: Option<Phrase>,
+    },
     Over(OverVerdicts),
+}
+
+/// `at least 10 quantities`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Needed {
+    pub count: Phrase,
+    pub of_limits: bool,
 }
 
 /// One of several outcomes in order: `good: holds when mean <= 2`.

@@ -12,6 +12,7 @@ mod common {
 mod comfort;
 mod computed;
 mod domain;
+mod draws;
 mod estimates;
 mod limits;
 mod metrics;

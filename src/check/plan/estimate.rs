@@ -113,6 +113,15 @@ impl OfGroup {
         }
     }
 
+    /// Whether an end of a confidence interval is taken, also of groups of the rows.
+    pub fn has_bound(&self) -> bool {
+        self.taken.iter().any(|taking| match taking {
+            Taking::Bound { .. } => true,
+            Taking::EachGroup { of, .. } => of.has_bound(),
+            _ => false,
+        })
+    }
+
     /// Indices of the other quantities whose rows it needs.
     pub fn others(&self) -> Vec<usize> {
         fn of(taking: &Taking) -> Vec<usize> {

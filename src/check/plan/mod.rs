@@ -89,6 +89,11 @@ impl Plan {
         &self.verdicts[0]
     }
 
+    /// A verdict that is decided by draws of the sections.
+    pub fn by_draws(&self) -> Option<&VerdictRule> {
+        self.verdicts.iter().find(|rule| rule.decision.by_draws())
+    }
+
     /// The same plan, with all plausibility findings as notes: they are reported and exclude no
     /// section.
     #[must_use]

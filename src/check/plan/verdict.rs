@@ -41,8 +41,9 @@ impl VerdictRule {
 /// By what a verdict is decided.
 #[derive(Clone, Debug)]
 pub enum Decision {
-    /// By the limits of quantities, given by index.
-    Limits { rule: Rule, quantities: Vec<usize> },
+    /// By the limits of quantities, given by index: once, or in a share (0 to 1) of draws of the
+    /// independent units.
+    Limits { rule: Rule, quantities: Vec<usize>, draws: Option<f64> },
     /// By other verdicts.
     Verdicts(Over),
     /// By a person.
@@ -67,6 +68,17 @@ impl Decision {
             Self::Limits { quantities, .. } => quantities.clone(),
             Self::Verdicts(_) | Self::Person(_) => Vec::new(),
             Self::Ordered(grades) => of_grades(grades, Self::quantities),
+        }
+    }
+
+    /// Whether it is decided by draws, also if one of several outcomes is.
+    pub fn by_draws(&self) -> bool {
+        match self {
+            Self::Limits { draws, .. } => draws.is_some(),
+            Self::Verdicts(_) | Self::Person(_) => false,
+            Self::Ordered(grades) => {
+                grades.iter().filter_map(|grade| grade.when.as_deref()).any(Self::by_draws)
+            }
         }
     }
 

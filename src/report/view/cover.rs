@@ -182,9 +182,11 @@ fn verdicts_with_a_name(view: &View<'_>) -> Vec<Block> {
 fn identification(view: &View<'_>) -> Vec<Block> {
     let (campaign, protocol) = (&view.found.campaign, &view.found.protocol);
     let stated = identity::on_cover(&campaign.report);
+    let drawn = view.found.drawn.iter().filter(|drawn| drawn.verdict.is_none());
     let rules = facts([
         ("Protocol", (&protocol.name).into()),
         ("Verdict rule", (&protocol.verdict_rule).into()),
+        ("Draws", Text::lines(drawn.map(|drawn| drawn.text().to_string().into()))),
         ("Source", (&protocol.source).into()),
     ]);
     let hash = Fact::new("Protocol hash", Run::Hash(protocol.sha256.clone()));

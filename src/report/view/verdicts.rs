@@ -17,7 +17,9 @@ pub fn table(view: &View<'_>, short: bool) -> Table {
     let row = |verdict: &VerdictResult| {
         let title = verdict.title.clone() + if verdict.overall { " (overall)" } else { "" };
         let places = [&verdict.clause, &verdict.source].into_iter().flatten();
+        let own = found.drawn.iter().filter(|one| one.verdict.as_ref() == Some(&verdict.name));
         let rule = std::iter::once(Text::from(&verdict.criterion))
+            .chain(own.map(|drawn| Run::Quiet(drawn.text().to_string()).into()))
             .chain(places.map(|place| Run::Quiet(place.clone()).into()));
         let notes = verdict.notes.iter().map(|note| view.symbols.text(note));
         let says = merged(&verdict.reasons, found).into_iter().map(reason).chain(notes).collect();

@@ -16,4 +16,4 @@ mod table;
 
 pub use groups::{Closeness, Group, RowGroup};
 pub use rows::{Rows, TooFew, Used, absent, used};
-pub use table::{Member, Table, count_independent};
+pub use table::{Member, Table, count_independent, independent_of};

@@ -40,14 +40,16 @@ impl<'a> Rows<'a> {
         (0..plan.quantities.len()).map(|index| Self::of(plan, facts, index, used)).collect()
     }
 
+    /// The rows of a draw of the sections. What is asked of their number is asked of all of them:
+    /// `reason` is why those are not sufficient.
+    pub fn drawn(plan: &'a Plan, index: usize, used: &Used<'a>, reason: Option<Reason>) -> Self {
+        let members = members(&plan.quantities[index], index, used);
+        Self { members, too_few: Vec::new(), reason }
+    }
+
     fn of(plan: &'a Plan, facts: &'a Facts, index: usize, used: &Used<'a>) -> Self {
         let quantity = &plan.quantities[index];
-        let mut members = Vec::new();
-        for (unit, values) in used {
-            for row in values.rows.get(index).into_iter().flatten() {
-                members.push(Member { unit, signal: &quantity.positions[row.position].name, row });
-            }
-        }
+        let members = members(quantity, index, used);
         let recorded = members.iter().map(|member| member.signal).collect::<BTreeSet<_>>().len();
         let pairs = pairs(plan, &members);
         let group = Group { plan, facts, quantity: Some(quantity), members: &members, table: &[] };
@@ -72,6 +74,17 @@ impl<'a> Rows<'a> {
     pub fn usable(&'a self) -> Result<&'a [Member<'a>], Reason> {
         self.reason.clone().map_or(Ok(&self.members), Err)
     }
+}
+
+/// The rows of a quantity, given with its index.
+fn members<'a>(quantity: &'a Quantity, index: usize, used: &Used<'a>) -> Vec<Member<'a>> {
+    let mut members = Vec::new();
+    for (unit, values) in used {
+        for row in values.rows.get(index).into_iter().flatten() {
+            members.push(Member { unit, signal: &quantity.positions[row.position].name, row });
+        }
+    }
+    members
 }
 
 /// A group with too few pairs.

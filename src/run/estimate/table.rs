@@ -22,23 +22,38 @@ pub type Table<'a> = [Result<&'a [Member<'a>], Reason>];
 
 /// The index of the independent unit of each member.
 pub fn independent(plan: &Plan, members: &[Member<'_>]) -> Vec<usize> {
-    let mut names: HashMap<String, usize> = HashMap::new();
-    let mut number = |name: String| {
-        let next = names.len();
-        *names.entry(name).or_insert(next)
+    independent_of(plan, members.iter().map(|member| member.unit))
+}
+
+/// By what units of independence are told apart.
+#[derive(PartialEq, Eq, Hash)]
+enum Key<'u> {
+    Site(usize),
+    Name(&'u str),
+    /// Its bits.
+    Number(u64),
+    Flag(bool),
+}
+
+/// The index of the independent unit of each section.
+pub fn independent_of<'u>(plan: &Plan, units: impl Iterator<Item = &'u Unit>) -> Vec<usize> {
+    let mut known: HashMap<(usize, Key<'u>), usize> = HashMap::new();
+    let one = |unit: &'u Unit| {
+        let key = match plan.independent {
+            Independent::Site => Key::Site(unit.site),
+            Independent::Section => Key::Name(&unit.name),
+            Independent::Column(index) => match &unit.columns[index] {
+                Ok(Scalar::Word(word)) => Key::Name(word),
+                Ok(Scalar::Number(number)) => Key::Number(number.to_bits()),
+                Ok(Scalar::Flag(flag)) => Key::Flag(*flag),
+                // A section that does not state its unit counts as part of its site.
+                Err(_) => Key::Site(unit.site),
+            },
+        };
+        let next = known.len();
+        *known.entry((unit.copy, key)).or_insert(next)
     };
-    let one = |member: &Member<'_>| match plan.independent {
-        Independent::Site => member.unit.site,
-        Independent::Section => number(member.unit.name.clone()),
-        Independent::Column(index) => number(match &member.unit.columns[index] {
-            Ok(Scalar::Word(word)) => word.clone(),
-            Ok(Scalar::Number(number)) => format!("{number:e}"),
-            Ok(Scalar::Flag(flag)) => flag.to_string(),
-            // A section that does not state its unit counts as part of its site.
-            Err(_) => format!("site {}", member.unit.site),
-        }),
-    };
-    members.iter().map(one).collect()
+    units.map(one).collect()
 }
 
 /// Number of independent units of the members.

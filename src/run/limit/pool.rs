@@ -253,8 +253,8 @@ struct Making<'a> {
 /// assessable.
 pub fn pool(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues]) -> Pool {
     let (rule, about) = match &plan.overall().decision {
-        Decision::Limits { rule, quantities } => (Some(*rule), quantities.as_slice()),
-        Decision::Verdicts(_) | Decision::Person(_) | Decision::Ordered(_) => (None, &[][..]),
+        Decision::Limits { rule, quantities, draws: None } => (Some(*rule), quantities.as_slice()),
+        _ => (None, &[][..]),
     };
     let used = used(units, values);
     let rows = Rows::of_all(plan, facts, &used);

@@ -34,6 +34,10 @@ pub struct Unit {
     /// Name of the first section of the site.
     pub site_name: String,
     /// Index of the section that it repeats.
+    /// In a draw of sections with repetition, how often it was drawn before: each is a unit of its
+    /// own there.
+    #[serde(skip)]
+    pub copy: usize,
     pub original: Option<usize>,
     /// `None` for a whole record.
     pub extent: Option<Extent>,
@@ -80,6 +84,7 @@ impl Unit {
             site,
             site_name: name.value.clone(),
             original: None,
+            copy: 0,
             extent: None,
             stretch: None,
             covered: None,
@@ -95,6 +100,17 @@ impl Unit {
     pub fn part(&self, plan: &Plan) -> Option<RunStretch> {
         self.extent
             .map(|extent| RunStretch::around(&plan.axis.column, extent, plan.sections.margin))
+    }
+
+    /// The same drawn once more.
+    #[must_use]
+    pub fn drawn_again(&self, copy: usize) -> Self {
+        let named = |name: &str| match copy {
+            0 => name.to_owned(),
+            copy => format!("{name} ({})", copy + 1),
+        };
+        let (name, site_name) = (named(&self.name), named(&self.site_name));
+        Self { copy, name, site_name, ..self.clone() }
     }
 
     /// Records the first reason not to use it.

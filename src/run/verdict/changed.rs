@@ -37,7 +37,9 @@ struct Edge {
 /// The changes of each limit of the overall verdict, and of all together. A verdict that is not
 /// assessable does not change with limits.
 pub fn limit_changes(plan: &Plan, judged: &Judged) -> Vec<LimitChange> {
-    let Decision::Limits { quantities, .. } = &plan.overall().decision else { return Vec::new() };
+    let Decision::Limits { quantities, draws: None, .. } = &plan.overall().decision else {
+        return Vec::new();
+    };
     if judged.verdict == Verdict::NotAssessable {
         return Vec::new();
     }
@@ -153,6 +155,6 @@ fn decided(
             fails
         })
         .collect();
-    let given = Given { barred: Vec::new(), quantities: &quantities, fails };
+    let given = Given { barred: Vec::new(), quantities: &quantities, fails, sample: None };
     decide(plan, &given).first().map_or(Verdict::NotAssessable, |first| first.outcome.overall())
 }

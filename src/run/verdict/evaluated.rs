@@ -1,6 +1,7 @@
 //! A campaign with every section evaluated: what verdicts are given on.
 
 use super::judge::{self, Judged, Told};
+use super::quantities;
 use crate::check::plan::{EstimateKind, Plan};
 use crate::problem::Problems;
 use crate::result::study::Reduction;
@@ -142,7 +143,7 @@ impl Evaluated {
     /// The result of one quantity, given by index, and a reason for each limit that is not met.
     pub fn judge_quantity(&self, plan: &Plan, index: usize) -> (QuantityResult, Vec<Reason>) {
         let used = used(&self.units, &self.values);
-        judge::of_quantities(plan, &self.facts, &used, index..index + 1).swap_remove(0)
+        quantities::of_quantities(plan, &self.facts, &used, [index]).swap_remove(0)
     }
 
     /// The same with other values of the sections. Those are used that are used here, as far as

@@ -1,25 +1,25 @@
 //! From the rows of all sections to results of quantities and verdicts: the nodes of the graph
 //! after the table of values.
 
-use std::collections::{BTreeSet, HashMap};
-use std::ops::Range;
+use std::collections::BTreeSet;
 
 use indexmap::IndexMap;
 
+use super::draws::Sample;
+use super::quantities::of_quantities;
 use super::verdicts;
 use crate::check::evaluate::flag;
-use crate::check::plan::{Chosen, Evaluation, Pairing, Plan, Quantity, Records, Zone};
+use crate::check::plan::{Plan, Zone};
 use crate::result::{
-    Consequence, Figures, Finding, OUTCOME, PairValue, QuantityResult, Reason, Reported,
-    StatisticName, StatisticResult, Verdict, VerdictResult, ZoneResult,
+    Consequence, Finding, InDraws, QuantityResult, Reason, Reported, Verdict, VerdictResult,
+    ZoneResult,
 };
 use crate::run::data_rules::changed;
-use crate::run::describe::{reports, spreads};
-use crate::run::estimate::{Group, Member, Rows, Used, count_independent, used};
-use crate::run::limit::{Compared, Judging, rule_place};
+use crate::run::describe::reports;
+use crate::run::estimate::used;
 use crate::run::sections::requirements::{self, Unchecked};
 use crate::run::sections::{Facts, Unit};
-use crate::run::values::{Row, SectionValues};
+use crate::run::values::SectionValues;
 
 #[derive(Debug)]
 pub struct Judged {
@@ -31,6 +31,8 @@ pub struct Judged {
     pub reasons: Vec<Reason>,
     /// Verdicts with a name.
     pub verdicts: Vec<VerdictResult>,
+    /// The rules of verdicts that were judged in draws of the sections.
+    pub drawn: Vec<InDraws>,
     pub quantities: Vec<QuantityResult>,
     pub zones: Vec<ZoneResult>,
     /// Numbers of the data of the sections.
@@ -77,9 +79,11 @@ pub fn judge(
     }));
     let (quantities, fails): (Vec<QuantityResult>, Vec<Vec<Reason>>) =
         of_quantities(plan, facts, &used, 0..plan.quantities.len()).into_iter().unzip();
-    let given = verdicts::Given { barred: missing, quantities: &quantities, fails };
+    let sample = Some(Sample { plan, facts, used: &used });
+    let given = verdicts::Given { barred: missing, quantities: &quantities, fails, sample };
     let decided = verdicts::decide(plan, &given);
     let verdicts = verdicts::named(plan, &decided);
+    let drawn = verdicts::drawn(plan, &decided);
     let (rule, overall) = (plan.overall(), decided.into_iter().next().unwrap_or_default());
     let verdict = overall.outcome.overall();
     let own_word = rule.has_words().then(|| match verdict {
@@ -96,30 +100,13 @@ pub fn judge(
         outcome,
         reasons,
         verdicts,
+        drawn,
         barred,
         fails,
         quantities,
         zones,
         reported,
     }
-}
-
-/// The results of some quantities, given by index, each with a reason for each limit that is not
-/// met.
-pub fn of_quantities(
-    plan: &Plan,
-    facts: &Facts,
-    used: &Used<'_>,
-    which: Range<usize>,
-) -> Vec<(QuantityResult, Vec<Reason>)> {
-    let all = Rows::of_all(plan, facts, used);
-    let table: Vec<_> = all.iter().map(Rows::usable).collect();
-    let of_quantity = |at: usize| {
-        let (quantity, Rows { members, too_few, reason }) = (&plan.quantities[at], &all[at]);
-        let rows = Group { plan, facts, quantity: Some(quantity), members, table: &table };
-        quantity_result(&Judging { quantity, rows, too_few }, reason.clone())
-    };
-    which.map(of_quantity).collect()
 }
 
 /// One reason for all parameters that have no value.
@@ -213,118 +200,4 @@ fn zone_result(zone: &Zone, units: &[Unit]) -> ZoneResult {
         minimum: zone.minimum_sections,
         holds: sites >= zone.minimum_sections,
     }
-}
-
-/// Of several outcomes of a quantity the word of the one that applies.
-fn outcome(quantity: &Quantity, statistics: &[StatisticResult]) -> Option<String> {
-    let name = StatisticName::from(OUTCOME.to_owned());
-    let of = statistics.iter().find(|one| !quantity.outcomes.is_empty() && one.name == name)?;
-    quantity.outcomes.get((of.value? as usize).checked_sub(1)?).cloned()
-}
-
-/// The result, and a reason for each limit that is not met.
-fn quantity_result(judging: &Judging<'_>, reason: Option<Reason>) -> (QuantityResult, Vec<Reason>) {
-    let (quantity, Group { plan, members, .. }) = (judging.quantity, judging.rows);
-    let (mut statistics, mut fails) = (Vec::new(), Vec::new());
-    // The limit of each row that has one of its own, and the share; of several the largest share.
-    let mut limits: HashMap<*const Row, (f64, Option<f64>)> = HashMap::new();
-    for Compared { result, fails: reason, own } in judging.compared() {
-        statistics.push(result);
-        fails.extend(reason);
-        for (row, limit, share) in own {
-            let known = limits.entry(std::ptr::from_ref(row)).or_insert((limit, share));
-            let size = |share: Option<f64>| share.unwrap_or(f64::INFINITY);
-            if size(share) > size(known.1) {
-                *known = (limit, share);
-            }
-        }
-    }
-    let undefined: Vec<Reason> = statistics
-        .iter()
-        .filter(|statistic| statistic.holds.is_none())
-        .map(|statistic| Reason::OfEstimate {
-            title: statistic.title.clone(),
-            scope: statistic.scope.told(),
-            reason: Box::new(statistic.reason.clone().unwrap_or(Reason::NoValue)),
-        })
-        .collect();
-    // What is not assessed hides nothing that cannot be.
-    let undefined =
-        undefined.iter().find(|reason| !reason.is_of_optional()).or(undefined.first()).cloned();
-    let met = statistics.iter().all(|statistic| statistic.holds == Some(true));
-    let reason = reason.or(undefined).or_else(|| if met { judging.fails_alone() } else { None });
-    let fails_beside = || {
-        let not_assessed = reason.as_ref().is_some_and(Reason::is_of_optional);
-        (not_assessed && statistics.iter().any(|one| one.holds == Some(false))).then_some(false)
-    };
-    let holds = if reason.is_none() { Some(met) } else { fails_beside() };
-    let show = |value: f64| quantity.unit.from_si(value);
-    let limit_of = |member: &Member<'_>| limits.get(&std::ptr::from_ref(member.row));
-    let value = |member: &Member<'_>| PairValue {
-        campaign: member.unit.campaign_name.clone(),
-        section: member.unit.name.clone(),
-        zone: member.unit.zone.clone(),
-        signal: member.signal.to_string(),
-        taken: quantity.evaluation.value_in_words(member.row.which),
-        record: member.row.record.clone(),
-        simulated: member.row.simulated.map(show),
-        measured: member.row.measured.map(show),
-        difference: show(member.row.value),
-        samples: member.row.samples,
-        limit: limit_of(member).map(|(limit, _)| show(*limit)),
-        ratio: limit_of(member).and_then(|(_, share)| *share),
-    };
-    let values: Vec<PairValue> = members.iter().map(value).collect();
-    let result = QuantityResult {
-        outcome: outcome(quantity, &statistics),
-        id: quantity.id.clone(),
-        title: quantity.title.clone(),
-        symbol: quantity.symbol.clone(),
-        unit: quantity.unit.text.clone(),
-        pairs: 0,
-        figures: Figures::default(),
-        groups: None,
-        of: quantity.words.of.clone(),
-        filter: quantity.words.filter.clone(),
-        processing: quantity.words.processing.clone(),
-        comparison: quantity.words.comparison.clone(),
-        clause: quantity.clause.clone(),
-        source: quantity.source.clone(),
-        notes: quantity.notes.clone(),
-        has_sides: quantity.evaluation.has_sides(),
-        from: match quantity.evaluation.as_ref() {
-            Evaluation::Values { records: Records::Of(of), .. } => Some(of.side.in_words().into()),
-            _ => None,
-        },
-        among: match quantity.evaluation.as_ref() {
-            Evaluation::Values { records: Records::Spread { of, .. }, .. } => {
-                Some(of.side.in_words().into())
-            }
-            other => other.pairing().and_then(Pairing::within).map(|side| side.in_words().into()),
-        },
-        against: match quantity.evaluation.pairing() {
-            Some(Pairing::Each(first, Chosen { record: Some(index), side }))
-                if first.side == side =>
-            {
-                Some(plan.records[index].title.clone())
-            }
-            Some(pairing) if pairing.within().is_some() => Some("Other record".into()),
-            _ => None,
-        },
-        repeats: quantity.evaluation.of_repeats(),
-        spread: match quantity.evaluation.as_ref() {
-            Evaluation::Values { records: Records::Spread { center, .. }, .. } => {
-                spreads::spread(*center, &values)
-            }
-            _ => None,
-        },
-        statistics,
-        reported: reports::of_quantity(judging),
-        n: count_independent(plan, members),
-        values,
-        holds,
-        reason,
-        rule: rule_place(&quantity.span),
-    };
-    (result.completed(), fails)
 }

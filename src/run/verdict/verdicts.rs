@@ -2,9 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use indexmap::IndexMap;
+
+use super::draws::{OfDraws, Sample};
 use crate::check::plan::{Decision, Over, Plan, Rule};
 use crate::result::{
-    GivenVerdict, Outcome, QuantityResult, Reason, StatisticName, Subject, VerdictResult,
+    GivenVerdict, InDraws, OftenNotMet, Outcome, QuantityResult, Reason, StatisticName, Subject,
+    VerdictResult,
 };
 use crate::run::limit::rule_place;
 
@@ -16,6 +20,8 @@ pub struct Given<'a> {
     pub quantities: &'a [QuantityResult],
     /// For each quantity, a reason for each limit that is not met.
     pub fails: Vec<Vec<Reason>>,
+    /// What rules by draws need: the values of the sections.
+    pub sample: Option<Sample<'a>>,
 }
 
 #[derive(Clone, Debug)]
@@ -24,6 +30,8 @@ pub struct Decided {
     /// Of several outcomes in order the word of the one that applies.
     pub word: Option<String>,
     pub reasons: Vec<Reason>,
+    /// Its rules that were judged in draws.
+    pub drawn: Vec<InDraws>,
 }
 
 impl Default for Decided {
@@ -34,15 +42,19 @@ impl Default for Decided {
 
 impl Decided {
     fn not_assessable(reasons: Vec<Reason>) -> Self {
-        Self { outcome: Outcome::NotAssessable, word: None, reasons }
+        Self::plain(Outcome::NotAssessable, reasons)
     }
 
     fn holds() -> Self {
-        Self { outcome: Outcome::Holds, word: None, reasons: Vec::new() }
+        Self::plain(Outcome::Holds, Vec::new())
     }
 
     fn fails(reasons: Vec<Reason>) -> Self {
-        Self { outcome: Outcome::DoesNotHold, word: None, reasons }
+        Self::plain(Outcome::DoesNotHold, reasons)
+    }
+
+    fn plain(outcome: Outcome, reasons: Vec<Reason>) -> Self {
+        Self { outcome, word: None, reasons, drawn: Vec::new() }
     }
 
     /// The outcome in words.
@@ -83,25 +95,35 @@ fn by(
     decided: &BTreeMap<usize, Decided>,
 ) -> Decided {
     match decision {
-        Decision::Limits { rule, quantities } => by_limits(plan, given, *rule, quantities),
+        Decision::Limits { rule, quantities, draws } => {
+            let of = |&at: &usize| (&given.quantities[at], given.fails[at].as_slice());
+            let found: Vec<Found<'_>> = quantities.iter().map(of).collect();
+            let once = by_limits(plan, &given.barred, *rule, quantities, &found);
+            match draws {
+                Some(share) if once.outcome.holds().is_some() => {
+                    in_draws(plan, given.sample, (*rule, quantities), *share, once.reasons)
+                }
+                _ => once,
+            }
+        }
         Decision::Verdicts(over) => by_verdicts(plan, over, decided),
-        Decision::Person(person) => Decided {
-            outcome: Outcome::Open,
-            word: None,
-            reasons: vec![Reason::ToBeJudged { person: person.clone() }],
-        },
+        Decision::Person(person) => {
+            Decided::plain(Outcome::Open, vec![Reason::ToBeJudged { person: person.clone() }])
+        }
         Decision::Ordered(grades) => {
             // Why the outcome is not a better one.
-            let mut reasons = Vec::new();
+            let (mut reasons, mut drawn) = (Vec::new(), Vec::new());
             for grade in grades {
-                let found = grade.when.as_deref().map(|when| by(plan, given, when, decided));
+                let mut found = grade.when.as_deref().map(|when| by(plan, given, when, decided));
+                drawn.extend(found.iter_mut().flat_map(|found| std::mem::take(&mut found.drawn)));
                 match found.as_ref().map_or(Some(true), |found| found.outcome.holds()) {
                     Some(false) => reasons = found.map_or(reasons, |found| found.reasons),
-                    None => return found.unwrap_or_default(),
+                    None => return Decided { drawn, ..found.unwrap_or_default() },
                     Some(true) => {
                         let outcome =
                             if grade.holds { Outcome::Holds } else { Outcome::DoesNotHold };
-                        return Decided { outcome, word: Some(grade.word.clone()), reasons };
+                        let word = Some(grade.word.clone());
+                        return Decided { outcome, word, reasons, drawn };
                     }
                 }
             }
@@ -136,9 +158,92 @@ pub fn named(plan: &Plan, decided: &[Decided]) -> Vec<VerdictResult> {
     all.filter_map(result).collect()
 }
 
-fn by_limits(plan: &Plan, given: &Given<'_>, rule: Rule, about: &[usize]) -> Decided {
-    let quantities = || about.iter().map(|&at| &given.quantities[at]);
-    let mut missing = given.barred.clone();
+/// Of each verdict the rules that were judged in draws.
+pub fn drawn(plan: &Plan, decided: &[Decided]) -> Vec<InDraws> {
+    let of_verdict = |(rule, found): (&crate::check::plan::VerdictRule, &Decided)| {
+        let named = |drawn: &InDraws| InDraws { verdict: rule.name.clone(), ..drawn.clone() };
+        found.drawn.iter().map(named).collect::<Vec<InDraws>>()
+    };
+    plan.verdicts.iter().zip(decided).flat_map(of_verdict).collect()
+}
+
+/// A result of a quantity, and a reason for each limit that is not met.
+type Found<'q> = (&'q QuantityResult, &'q [Reason]);
+
+/// A rule over limits in draws of the sections. It holds in so many of them, or does not, whatever
+/// those come to in which a limit has no value. `once` are the reasons of the sections as they are.
+fn in_draws(
+    plan: &Plan,
+    sample: Option<Sample<'_>>,
+    (rule, about): (Rule, &[usize]),
+    share: f64,
+    mut once: Vec<Reason>,
+) -> Decided {
+    let judge = |quantities: &[(QuantityResult, Vec<Reason>)]| {
+        let found: Vec<Found<'_>> =
+            quantities.iter().map(|(result, fails)| (result, fails.as_slice())).collect();
+        let decided = by_limits(plan, &[], rule, about, &found);
+        let limits = |(result, _): &Found<'_>| {
+            let failed = result.statistics.iter().filter(|one| one.holds == Some(false));
+            let of = failed.map(|one| (result.id.clone(), one.title.clone(), one.scope.told()));
+            of.collect::<Vec<_>>()
+        };
+        let undefined = decided.outcome.holds().is_none();
+        let first = decided.reasons.into_iter().next().filter(|_| undefined);
+        (decided.outcome.holds(), found.iter().flat_map(limits).collect::<Vec<_>>(), first)
+    };
+    let found = sample.ok_or(Reason::DrawsNeedValues).and_then(|one| one.each(about, judge));
+    let OfDraws { found, units } = match found {
+        Ok(found) => found,
+        Err(reason) => return Decided::not_assessable(vec![reason]),
+    };
+    let count = |what: Option<bool>| found.iter().filter(|(holds, ..)| *holds == what).count();
+    let mut often: IndexMap<_, usize> = IndexMap::new();
+    for limit in found.iter().flat_map(|(_, failed, _)| failed) {
+        *often.entry(limit).or_default() += 1;
+    }
+    // Of several the first of the protocol.
+    let often = often.into_iter().rev().max_by_key(|(_, draws)| *draws);
+    let drawn = InDraws {
+        verdict: None,
+        held: count(Some(true)),
+        undefined: count(None),
+        draws: found.len(),
+        required: 100.0 * share,
+        units,
+        most_often: often.map(|((quantity, estimate, scope), draws)| OftenNotMet {
+            quantity: quantity.clone(),
+            estimate: estimate.clone(),
+            scope: scope.clone(),
+            draws,
+        }),
+    };
+    let told = Box::new(drawn.clone());
+    let decided = match drawn.holds() {
+        Some(true) => Decided::holds(),
+        Some(false) => {
+            once.insert(0, Reason::TooFewDraws { drawn: told });
+            Decided::fails(once)
+        }
+        None => {
+            let first = found.iter().find_map(|(.., reason)| reason.clone());
+            let reason = Box::new(first.unwrap_or(Reason::NoValue));
+            Decided::not_assessable(vec![Reason::DrawsUndefined { drawn: told, reason }])
+        }
+    };
+    Decided { drawn: vec![drawn], ..decided }
+}
+
+/// A rule over the limits of some quantities; `about` has their indices.
+fn by_limits(
+    plan: &Plan,
+    barred: &[Reason],
+    rule: Rule,
+    about: &[usize],
+    found: &[Found<'_>],
+) -> Decided {
+    let quantities = || found.iter().map(|(result, _)| *result);
+    let mut missing = barred.to_vec();
     // A quantity without limits is reported and has no effect.
     let without = |quantity: &&QuantityResult| quantity.statistics.is_empty();
     // What needs something optional that is absent is not assessed, and the rest is.
@@ -165,7 +270,7 @@ fn by_limits(plan: &Plan, given: &Given<'_>, rule: Rule, about: &[usize]) -> Dec
         quantities().filter(|quantity| quantity.holds == Some(true) && !without(quantity)).count();
     let limits_holding: usize = quantities().map(limits_holding).sum();
     let mut reasons: Vec<Reason> =
-        about.iter().flat_map(|&at| given.fails[at].iter().cloned()).collect();
+        found.iter().flat_map(|(_, fails)| fails.iter().cloned()).collect();
     let holds = match rule {
         Rule::EveryLimit => reasons.is_empty(),
         Rule::AtLeastQuantities(needed) => holding >= needed,

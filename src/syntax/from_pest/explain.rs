@@ -328,6 +328,7 @@ fn in_words(rule: Rule) -> &'static str {
         outcome | outcome_of_verdict | outcome_word => "`good: holds when ...`",
         outcome_holds | outcome_fails => "`holds` or `fails`",
         every_limit => "`every limit holds`",
+        in_draws | kw_draws => "`in 95 % of draws`",
         at_least_n => "`at least N quantities hold`",
         some_verdict | all_verdicts | one_verdict | named_verdict => "`some_verdict holds`",
         enough_verdicts => "`at least N of a, b, c hold`",

@@ -40,7 +40,7 @@ fn number(part: &mut Parsed) -> Option<Number> {
 
 /// What is read without its neighbours: parentheses, a magnitude, a number, an end of a confidence
 /// interval, a percentile or a path.
-fn value(mut part: Parsed) -> Option<Phrase> {
+pub(super) fn value(mut part: Parsed) -> Option<Phrase> {
     let node = match part.rule {
         Rule::parens => in_parens(&mut part)?,
         Rule::magnitude => Node::Magnitude(Box::new(sum(part.next()?)?)),

@@ -1,10 +1,12 @@
 //! Rules of verdicts, and outcomes in order.
 
-use super::tree::{either, sum};
+use super::tree::{either, sum, value};
 use super::{Parsed, Rule, parsed};
 use crate::problem::Problems;
 use crate::syntax::document::Text;
-use crate::syntax::phrase::{Node, Number, Outcome, OverVerdicts, Phrase, Verdict, normalised};
+use crate::syntax::phrase::{
+    Needed, Node, Number, Outcome, OverVerdicts, Phrase, Verdict, normalised,
+};
 
 pub fn verdict(text: &Text, problems: &mut Problems) -> Option<Verdict> {
     verdict_rule(parsed(Rule::verdict, text, problems)?.next()?)
@@ -32,14 +34,23 @@ fn outcome_when<T>(mut inner: Parsed, when: fn(Parsed) -> Option<T>) -> Option<O
 }
 
 fn verdict_rule(inner: Parsed) -> Option<Verdict> {
-    match inner.rule {
-        Rule::every_limit => return Some(Verdict::EveryLimit),
-        Rule::some_verdict => return Some(Verdict::Over(over_verdicts(inner)?)),
-        _ => {}
+    if inner.rule == Rule::some_verdict {
+        return Some(Verdict::Over(over_verdicts(inner)?));
     }
-    let mut inner = inner.filter(|part| part.rule != Rule::at_least);
-    let count = sum(inner.next()?)?;
-    Some(Verdict::AtLeast { count, of_limits: inner.next()?.rule == Rule::of_limits })
+    let (mut needed, mut draws) = (None, None);
+    let mut count = None;
+    for mut part in inner {
+        match part.rule {
+            Rule::sum => count = Some(sum(part)?),
+            Rule::of_quantities | Rule::of_limits => {
+                let of_limits = part.rule == Rule::of_limits;
+                needed = Some(Needed { count: count.take()?, of_limits });
+            }
+            Rule::in_draws => draws = Some(value(part.next()?)?),
+            _ => {}
+        }
+    }
+    Some(Verdict::Limits { needed, draws })
 }
 
 fn over_verdicts(part: Parsed) -> Option<OverVerdicts> {

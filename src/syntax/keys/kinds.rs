@@ -665,7 +665,7 @@ pub const KINDS: &[Kind] = &[
             &[
                 phrase(
                     "validated",
-                    "`when every limit holds` (the default), `when at least N quantities hold`, or a rule over named verdicts.",
+                    "`when every limit holds` (the default), `when at least N quantities hold`, both also `in 95 % of draws`, or a rule over named verdicts.",
                     "when every limit holds",
                 ),
                 WORDS,
@@ -703,7 +703,7 @@ pub const KINDS: &[Kind] = &[
             )),
             phrase(
                 "holds",
-                "`when every limit holds`, `when at least N quantities hold`, or a rule over other verdicts.",
+                "`when every limit holds`, `when at least N quantities hold`, both also `in 95 % of draws`, or a rule over other verdicts.",
                 "when virtual_test is measured_test",
             ),
             VERDICT_OUTCOME,
