@@ -142,6 +142,7 @@ pub fn certification() -> Certification {
         removed: fishplate::result::Removed::default(),
         deviations: Vec::new(),
         verdicts: Vec::new(),
+        drawn: Vec::new(),
         reasons: vec![
             Reason::said("ÿ*_max: standard deviation above its limit"),
             Reason::said("z̈*_max: not assessable, channel `az_I` is missing in 33 records"),
