@@ -141,7 +141,7 @@ impl Checker<'_> {
             if signed && direction == Direction::Magnitude {
                 self.signed_estimate(estimate, &written.statistic);
             }
-            let any_sign = written.at_least || written.lower.is_some();
+            let any_sign = direction != Direction::Magnitude || written.lower.is_some();
             let expr = self.suitable_bound(bound.expr, any_sign, of, common)?;
             self.share_above_one(estimate, &expr)?;
             Some(OfGroup { expr: self.on_its_side(expr, written, estimate, common)?, ..bound })

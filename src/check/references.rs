@@ -162,8 +162,7 @@ impl Checker<'_> {
     fn amount(&mut self, all: &All<'_>, at: usize) {
         let (of, limit) = all.0[at];
         let names = referred(&limit.bound.expr);
-        let (Some((name, place)), true) =
-            (names.first(), limit.direction != Direction::AtLeast && !limit.edge)
+        let (Some((name, place)), true) = (names.first(), limit.direction == Direction::Magnitude)
         else {
             return;
         };

@@ -129,3 +129,25 @@ fn a_limit_between_two_edges_is_one_row() {
     let rule = "at least 6 limits hold";
     assert_eq!(results(&rules(rule))["verdict"], "not assessable");
 }
+
+/// Where the sign counts, a limit may be zero or below it.
+#[test]
+fn a_limit_at_most_zero_or_less() {
+    let found = results(
+        "quantity Q_1 \"Leading\"\n  from   measured\n  of     Q at wheelset 1\n  value  mean - 50 kN\n  \
+           limit  each at most 0 kN\n  limit  (mean - 60 kN) at most -20 kN\n  \
+           limit  (mean - 61 kN) at most -80 kN\n",
+    );
+    let quantity = &found["quantities"][0];
+    let values = quantity["values"].as_array().expect("a list").iter();
+    let values: Vec<f64> = values.map(|one| number(&one["value"])).collect();
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let each = statistics(quantity, "each")[0];
+    assert_eq!(each["holds"], values.iter().all(|value| *value <= 0.0));
+    assert!(each["reason"].is_null(), "{each}");
+    let [wide, narrow] = [60, 61].map(|less| statistics(quantity, &format!("mean - {less} kN"))[0]);
+    for (row, less, limit) in [(wide, 60.0, -20.0), (narrow, 61.0, -80.0)] {
+        near(number(&row["value"]), mean - less);
+        assert_eq!(row["holds"], mean - less <= limit, "{row}");
+    }
+}

@@ -56,7 +56,7 @@ impl<'a> OfGroup<'a> {
                 value *= number(factor, &names)?;
             }
         }
-        if value <= 0.0 && limit.direction != Direction::AtLeast && !limit.edge {
+        if value <= 0.0 && limit.direction == Direction::Magnitude {
             return Err(Reason::LimitNotPositive);
         }
         Ok(value)
