@@ -35,7 +35,7 @@ mod xlsx;
 use std::path::Path;
 
 pub use format::Format;
-pub use text::{DateOrder, DecimalMark, Separator};
+pub use text::{ClockForm, DateOrder, DecimalMark, Separator};
 
 use bytes::Bytes;
 
@@ -113,6 +113,10 @@ fields! {
         "comment" comment: Option<String>,
         /// Order of day, month and year in time stamps such as 03/04/2026.
         "dates" dates: Option<DateOrder>,
+        /// What times of two numbers are, such as 12:01.
+        "clock" clock: Option<ClockForm>,
+        /// Number of lines that a row goes over.
+        "lines per row" lines_per_row: Option<usize>,
     }
 }
 
@@ -129,8 +133,8 @@ enum Want {
 /// `file-missing`, `file-unreadable`, `file-empty`, `file-too-large`; `format-unknown`,
 /// `format-not-read`, `format-mislabelled`, `format-damaged`, `too-many-values`; of a text also
 /// `encoding`, `dialect`, `no-numbers`, `line-too-long`, `ragged-row`, `not-a-number`,
-/// `not-finite`, `not-a-date`, `decimal-comma`, `thousands`, `date-order`, `header-line`,
-/// `more-problems`.
+/// `not-finite`, `not-a-date`, `decimal-comma`, `thousands`, `date-order`, `clock-form`,
+/// `header-line`, `wrapped-rows`, `more-problems`.
 pub fn read(path: &Path, shown: &str, options: &Options) -> Result<File, Vec<Problem>> {
     read_as(path, shown, options, Want::Values)
 }

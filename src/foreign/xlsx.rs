@@ -203,17 +203,20 @@ fn table(
         let of_row = heading(units, column).and_then(|text| unbracketed(&text));
         let other_unit = conflict(of_row.as_deref(), unit.clone());
         let unit = of_row.or(unit);
-        let Some((values, since)) = values(options, &cells).map_err(|(at, text)| {
+        let found = values(options, &cells).map_err(|(at, text)| {
             let cell = format!("{}{}", letters(column), data[at].0 + 1);
             let says = format!(
                 "`{}`, sheet `{name}`, cell {cell}: `{text}` is not a number as in the rows before",
                 input.shown
             );
             Problem::error("not-a-number", says).help("correct the cell, or leave it empty")
-        })?
-        else {
-            table.left_out.push((called, "its cells are text".into()));
-            continue;
+        })?;
+        let (values, since) = match found {
+            Ok(found) => found,
+            Err(why) => {
+                table.left_out.push((called, why));
+                continue;
+            }
         };
         table.channels.push(Channel {
             name: called,
@@ -273,17 +276,21 @@ fn headers<'a>(
 /// The values of a column; of times seconds from the first, and that one in ns since 1970.
 type Numbers = (Vec<f64>, Option<i64>);
 
-/// The numbers of a column; `None` for texts.
+/// The numbers of a column, or why it is left out.
 ///
 /// # Errors
 /// A text among numbers, with its row.
-fn values(options: &Options, cells: &[Option<&Cell>]) -> Result<Option<Numbers>, (usize, String)> {
+fn values(
+    options: &Options,
+    cells: &[Option<&Cell>],
+) -> Result<Result<Numbers, String>, (usize, String)> {
     let there = || cells.iter().flatten();
     if there().next().is_none_or(|first| first.text().is_some()) {
         let texts: Vec<&str> =
             cells.iter().map(|cell| cell.and_then(Cell::text).unwrap_or("")).collect();
         let times = stamps_from_first(&texts, options);
-        return Ok(times.filter(|_| there().all(|cell| cell.text().is_some())));
+        let all = there().all(|cell| cell.text().is_some());
+        return Ok(times.and_then(|times| all.then_some(times).ok_or("its cells are text".into())));
     }
     let wrong = cells.iter().enumerate().find_map(|(at, cell)| Some((at, (*cell)?.text()?)));
     if let Some((at, text)) = wrong {
@@ -300,7 +307,7 @@ fn values(options: &Options, cells: &[Option<&Cell>]) -> Result<Option<Numbers>,
         _ => f64::NAN,
     };
     let since = (steps(first - EPOCH) as i64).saturating_mul(STEP);
-    Ok(Some((cells.iter().map(number).collect(), days.then_some(since))))
+    Ok(Ok((cells.iter().map(number).collect(), days.then_some(since))))
 }
 
 /// Rows of two cells, the first a text: `Fahrzeug | Wagen 5`.

@@ -29,9 +29,22 @@ use crate::yaml::{Key, Literal, Node, Value, Words};
 
 /// Significant digits of a channel: those of a 32-bit number, and more than any sensor resolves.
 const DIGITS: usize = 9;
-/// Significant digits of time and distance, which may begin far from zero: a micrometre at 100 km,
-/// a microsecond in a day.
+/// Least significant digits of time and distance, which may begin far from zero: a micrometre at
+/// 100 km, a microsecond in a day. Of seconds since 1970, more are needed.
 const AXIS_DIGITS: usize = 12;
+/// Digits of a step of an axis: a thousandth of it at least. Steps are even to one part in a
+/// hundred or better.
+const STEP_DIGITS: f64 = 4.0;
+/// Digits that a double has.
+const MOST_DIGITS: f64 = 17.0;
+
+/// Significant digits of an axis: a thousandth of its mean step is told.
+fn axis_digits(values: &[f64]) -> usize {
+    let (Some(first), Some(last)) = (values.first(), values.last()) else { return AXIS_DIGITS };
+    let step = (last - first).abs() / (values.len().max(2) - 1) as f64;
+    let digits = (first.abs().max(last.abs()) / step).log10().ceil() + STEP_DIGITS;
+    if digits.is_finite() { AXIS_DIGITS.max(digits.min(MOST_DIGITS) as usize) } else { AXIS_DIGITS }
+}
 
 /// Writes the record in a format; both hold the same numbers. With a store, a few rows of all
 /// columns are in memory at a time, and of each worker all rows of one column.
@@ -45,14 +58,11 @@ pub fn write_record(
     sink: &mut (dyn io::Write + Send),
 ) -> Result<(), Problem> {
     let of_file = |column: &Column| -> Result<(Layout, Values), Problem> {
-        let digits =
-            if ["time", "distance"].contains(&column.name.as_str()) { AXIS_DIGITS } else { DIGITS };
-        let values = column
-            .values
-            .all()?
-            .iter()
-            .map(|value| significant(column.unit.from_si(*value), digits))
-            .collect();
+        let values = column.values.all()?;
+        let is_axis = ["time", "distance"].contains(&column.name.as_str());
+        let digits = if is_axis { axis_digits(&values) } else { DIGITS };
+        let values =
+            values.iter().map(|value| significant(column.unit.from_si(*value), digits)).collect();
         let heading = format!("{} [{}]", column.name, column.unit);
         let column = FileColumn { heading, values: Numbers(values), digits: None };
         let layout = Layout::of(&column);

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::super::Options;
 use super::{numbers, stamps};
+use crate::units::Unit;
 use crate::yaml::Words;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -102,6 +103,8 @@ pub fn split(line: &str, separator: Separator) -> Vec<Range<usize>> {
                         line[start..].find(char::is_whitespace).map_or(line.len(), |at| start + at)
                     }
                 };
+                // Columns of fixed width may touch: `-1.500000E+03-1.380000E+03`.
+                let end = touching(&line[start..end]).map_or(end, |at| start + at);
                 cells.push(trim(line, start..end));
                 from = end;
             }
@@ -121,6 +124,22 @@ pub fn split(line: &str, separator: Separator) -> Vec<Range<usize>> {
         }
     }
     cells
+}
+
+/// Where a number with a decimal mark ends and the sign of the next one stands.
+fn touching(word: &str) -> Option<usize> {
+    let bytes = word.as_bytes();
+    let is_number = |part: &[u8]| {
+        let marks = part.iter().filter(|byte| matches!(byte, b'.' | b',')).count();
+        let known = |byte: &u8| byte.is_ascii_digit() || b".,+-eEdD".contains(byte);
+        marks == 1 && part.iter().all(known)
+    };
+    let mut signs = (1..bytes.len()).filter(|at| {
+        matches!(bytes[*at], b'-' | b'+') && matches!(bytes[at - 1], b'0'..=b'9' | b'.')
+    });
+    let first = signs.next()?;
+    let end = signs.next().unwrap_or(bytes.len());
+    (is_number(&bytes[..first]) && is_number(&bytes[first..end])).then_some(first)
 }
 
 /// Bytes of a quoted cell at the start of a text, or 0.
@@ -169,6 +188,71 @@ pub fn comment<'a>(line: &'a str, options: &Options) -> Option<&'a str> {
 /// Whether a line can be a row: neither blank nor a comment.
 pub fn is_row(line: Line<'_>, options: &Options) -> bool {
     !line.text.trim().is_empty() && comment(line.text, options).is_none()
+}
+
+/// Whether a line has numbers alone.
+fn is_numbers(line: Line<'_>, separator: Separator, options: &Options) -> bool {
+    let cells = split(line.text, separator);
+    let all = |decimal: char| numbers_among(line.text, &cells, decimal) == Some(cells.len());
+    is_row(line, options) && (all('.') || all(','))
+}
+
+/// The first line of numbers.
+fn first_of_numbers(lines: &[Line<'_>], separator: Separator, options: &Options) -> usize {
+    let first = lines.iter().position(|line| is_numbers(*line, separator, options));
+    options.header_lines.or(first).unwrap_or(lines.len()).min(lines.len())
+}
+
+/// The lines with each row as one line: so many lines of the file are a row.
+pub fn joined(lines: &[Line<'_>], options: &Options, each: usize) -> Vec<(usize, String)> {
+    let Some(Dialect { separator, .. }) = detect(lines, options) else { return Vec::new() };
+    let mark = if let Separator::Mark(mark) = separator { mark } else { ' ' };
+    let (before, rows) = lines.split_at(first_of_numbers(lines, separator, options));
+    let rows: Vec<&Line<'_>> = rows.iter().filter(|line| is_row(**line, options)).collect();
+    let row = |parts: &[&Line<'_>]| {
+        let text = parts.iter().map(|line| line.text.trim_end().trim_end_matches(mark));
+        (parts[0].number, text.collect::<Vec<_>>().join(&mark.to_string()))
+    };
+    let before = before.iter().map(|line| (line.number, line.text.to_string()));
+    before.chain(rows.chunks(each.max(1)).map(row)).collect()
+}
+
+/// Rows that go over several lines each: how many, and the first line that is not a row of its own.
+pub fn wrapped<'a>(
+    lines: &[Line<'a>],
+    dialect: Dialect,
+    options: &Options,
+) -> Option<(usize, Line<'a>)> {
+    /// Most lines of a row, and rows that are compared.
+    const MOST: usize = 16;
+    const ROWS: usize = 3;
+    let first = first_of_numbers(lines, dialect.separator, options);
+    let (before, rows) = lines.split_at(first);
+    let cells = |line: &Line<'a>| split(line.text, dialect.separator).len();
+    let rows: Vec<Line<'a>> =
+        rows.iter().filter(|line| is_row(**line, options)).take(MOST * ROWS).copied().collect();
+    let counts: Vec<usize> = rows.iter().map(cells).collect();
+    let (second, count) = (*rows.get(1)?, counts[0]);
+    if counts.iter().any(|other| *other != count) {
+        let each = (2..=MOST).find(|each| {
+            let cycle = counts.iter().zip(counts.iter().cycle().skip(*each));
+            counts.len() >= each * ROWS
+                && cycle.take(counts.len() - each).all(|(one, other)| one == other)
+        })?;
+        return Some((each, second));
+    }
+    // Names for several lines, none of them a unit.
+    let names = before.iter().rev().find(|line| is_row(**line, options))?;
+    let words: Vec<&str> =
+        split(names.text, dialect.separator).into_iter().map(|cell| &names.text[cell]).collect();
+    let is_unit = |word: &&str| word.starts_with(['[', '(']) || Unit::parse(word).is_ok();
+    let several = words.len() / count.max(1);
+    let fits = several > 1 && several <= MOST && words.len() == several * count;
+    let is_name = |word: &&str| word.starts_with(char::is_alphabetic);
+    (fits
+        && words.iter().all(is_name)
+        && 3 * words.iter().filter(|word| is_unit(word)).count() < words.len())
+    .then_some((several, second))
 }
 
 /// Lines looked at to detect the dialect.
@@ -232,8 +316,13 @@ fn weigh(line: &str, separator: Separator, decimal: char) -> Option<(usize, f64)
     if cells.len() > 1 && cells.last().is_some_and(Range::is_empty) {
         cells.pop();
     }
-    let numbers = numbers_among(line, &cells, decimal)?;
-    Some((cells.len(), (numbers * numbers) as f64 / cells.len() as f64))
+    // A number with marks between thousands tells less than one with a decimal mark.
+    let grouped = |cell: &&Range<usize>| {
+        matches!(numbers::read(&line[(*cell).clone()], decimal), numbers::Cell::Thousands(_))
+    };
+    let half = 0.5 * cells.iter().filter(grouped).count() as f64;
+    let numbers = numbers_among(line, &cells, decimal)? as f64 - half;
+    Some((cells.len(), numbers * numbers / cells.len() as f64))
 }
 
 /// Number of cells that are numbers, time stamps or empty, if a row can be one of numbers: at least

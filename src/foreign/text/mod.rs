@@ -21,7 +21,7 @@ use dialect::{Dialect, Line, is_row};
 #[cfg(feature = "foreign")]
 pub use header::{most_are_units, unbracketed};
 pub use header::{name_and_unit, unit_of_name};
-pub use stamps::DateOrder;
+pub use stamps::{ClockForm, DateOrder};
 #[cfg(feature = "foreign")]
 pub use values::stamps_from_first;
 
@@ -60,15 +60,26 @@ pub fn read(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
         let says = format!("`{shown}` has more than {} million lines", MOST_LINES >> 20);
         return Err(Problem::error("too-many-values", says).help("divide it into files").into());
     }
-    let lines = dialect::lines(&content);
+    let mut lines = dialect::lines(&content);
     if let Some(line) = lines.iter().find(|line| line.text.len() > LONGEST_LINE) {
         let says =
             format!("line {} of `{shown}` has more than {} MB", line.number, LONGEST_LINE >> 20);
         let problem = error("line-too-long", says, &at(shown, *line, 0..0));
         return Err(problem.help("export one line per sample").into());
     }
+    let joined = options.lines_per_row.map(|each| dialect::joined(&lines, options, each));
+    if let Some(joined) = &joined {
+        lines = joined.iter().map(|(number, text)| Line { number: *number, text }).collect();
+    }
     let no_numbers = || no_numbers(input, &lines);
     let dialect = dialect::detect(&lines, options).ok_or_else(no_numbers)?;
+    if joined.is_none()
+        && let Some((each, line)) = dialect::wrapped(&lines, dialect, options)
+    {
+        let says = format!("each row goes over {each} lines: this one goes on with the row before");
+        let problem = error("wrapped-rows", says, &at(shown, line, 0..line.text.len()));
+        return Err(problem.help(format!("say so in the mapping: `format: {{lines per row: {each}}}`; or `1` if each line is a row")).into());
+    }
     let mut text = Text { shown, options, dialect };
     let start = text.first_row(&lines).ok_or_else(no_numbers)?;
     let (before, rows) = lines.split_at(start);

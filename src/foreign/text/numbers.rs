@@ -6,8 +6,8 @@ pub enum Cell {
     /// NaN where the cell says so.
     Number(f64),
     Empty,
-    /// A number with marks between its thousands.
-    Thousands,
+    /// A number with marks between its thousands, as a decimal mark that is known makes it.
+    Thousands(f64),
     NotFinite,
     Other,
 }
@@ -53,8 +53,7 @@ pub fn read(text: &str, decimal: char) -> Cell {
     let open = comma && plain.ends_with(b".");
     match fast_float2::parse::<f64, _>(&*plain) {
         Ok(number) if numeric && !open => finite(number),
-        _ if thousands(text, decimal) => Cell::Thousands,
-        _ => Cell::Other,
+        _ => thousands(text, decimal).map_or(Cell::Other, Cell::Thousands),
     }
 }
 
@@ -63,24 +62,65 @@ fn finite(number: f64) -> Cell {
     if number.is_infinite() { Cell::NotFinite } else { Cell::Number(number) }
 }
 
-/// `1.234,5`, `1 234,5`, `1'234.5`, `1.234.567`: groups of three digits with a mark that is not the
+/// `1.234,5`, `1 234,5`, `1'234.5`, `1.234`: groups of three digits with a mark that is not the
 /// decimal mark.
-fn thousands(text: &str, decimal: char) -> bool {
-    let text = text.trim_start_matches(['-', '+']);
-    let (whole, fraction) = match text.split_once(decimal) {
-        Some((whole, fraction)) => (whole, Some(fraction)),
-        None => (text, None),
-    };
-    let Some(mark) = whole.chars().find(|c| !c.is_ascii_digit()) else { return false };
+fn thousands(text: &str, decimal: char) -> Option<f64> {
+    let size = text.trim_start_matches(['-', '+']);
+    let (whole, fraction) = size.split_once(decimal).unwrap_or((size, "0"));
+    let mark = whole.chars().find(|c| !c.is_ascii_digit())?;
     if !matches!(mark, '.' | ',' | '\'' | '’' | ' ' | '\u{a0}' | '\u{202f}') || mark == decimal {
-        return false;
+        return None;
     }
     let groups: Vec<&str> = whole.split(mark).collect();
     let digits = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit());
-    (1..=3).contains(&groups[0].len())
+    let grouped = (1..=3).contains(&groups[0].len())
+        && !groups[0].starts_with('0')
         && groups.iter().all(|group| digits(group))
         && groups[1..].iter().all(|group| group.len() == 3)
-        && (fraction.is_some_and(digits) || groups.len() > 2)
+        && digits(fraction);
+    let number = || format!("{}.{fraction}", groups.concat()).parse::<f64>().ok();
+    let size = grouped.then(number).flatten()?;
+    Some(if text.starts_with('-') { -size } else { size })
+}
+
+/// Whether the mark in the numbers of a column can stand between thousands as well: `990`, `1.004`.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Marks {
+    /// A number below 1000 without a mark.
+    small: bool,
+    /// The row of the first number with three digits after its mark.
+    grouped: Option<usize>,
+    /// A number that tells what the mark is.
+    decided: bool,
+}
+
+impl Marks {
+    /// Looks at the number in a row.
+    pub fn see(&mut self, row: usize, word: &str, decimal: char) {
+        if self.decided || word.is_empty() {
+            return;
+        }
+        let word = word.trim_start_matches(['-', '+']);
+        let digits = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit());
+        match word.split_once(decimal) {
+            None if word.len() <= 3 && digits(word) => self.small = true,
+            Some((whole, fraction))
+                if (1..=3).contains(&whole.len())
+                    && !whole.starts_with('0')
+                    && fraction.len() == 3
+                    && digits(whole)
+                    && digits(fraction) =>
+            {
+                self.grouped.get_or_insert(row);
+            }
+            _ => self.decided = true,
+        }
+    }
+
+    /// The row of a number that can be read in both ways.
+    pub fn unclear(&self) -> Option<usize> {
+        self.grouped.filter(|_| self.small && !self.decided)
+    }
 }
 
 #[cfg(test)]
@@ -132,17 +172,18 @@ mod tests {
 
     #[test]
     fn thousands_are_not_guessed() {
-        for (text, decimal) in [
-            ("1.234,5", ','),
-            ("1,234.5", '.'),
-            ("1 234,56", ','),
-            ("-1'234.5", '.'),
-            ("1.234.567", ','),
-            ("1,234,567", '.'),
+        for (text, decimal, number) in [
+            ("1.234,5", ',', 1234.5),
+            ("1,234.5", '.', 1234.5),
+            ("1 234,56", ',', 1234.56),
+            ("-1'234.5", '.', -1234.5),
+            ("1.234.567", ',', 1_234_567.0),
+            ("1,234,567", '.', 1_234_567.0),
+            ("1.004", ',', 1004.0),
         ] {
-            assert_eq!(read(text, decimal), Cell::Thousands, "{text}");
+            assert_eq!(read(text, decimal), Cell::Thousands(number), "{text}");
         }
-        for (text, decimal) in [("1.23,5", ','), ("12345.6,7", '.')] {
+        for (text, decimal) in [("1.23,5", ','), ("12345.6,7", '.'), ("0.500", ',')] {
             assert_eq!(read(text, decimal), Cell::Other, "{text}");
         }
     }

@@ -16,12 +16,35 @@ impl Words for DateOrder {
         &[("dmy", Self::DayMonthYear), ("mdy", Self::MonthDayYear), ("ymd", Self::YearMonthDay)];
 }
 
+/// What a time of two numbers is, such as 12:01.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ClockForm {
+    HoursMinutes,
+    MinutesSeconds,
+}
+
+impl Words for ClockForm {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("hh:mm", Self::HoursMinutes), ("mm:ss", Self::MinutesSeconds)];
+}
+
+/// Why stamps cannot be read with certainty.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unclear {
+    /// Day or month may be first.
+    Order,
+    /// Two numbers are hours and minutes, or minutes and seconds.
+    Clock,
+}
+
 /// A stamp as written.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stamp {
     pub date: Option<Date>,
     /// Time of the day in nanoseconds, less the offset from UTC if one is written.
     pub clock: Option<i64>,
+    /// The clock has two numbers, of which nothing says that they are hours and minutes.
+    pub two: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,14 +67,16 @@ pub fn read(text: &str) -> Option<Stamp> {
         return None;
     }
     if let Some(date) = date(text) {
-        return Some(Stamp { date: Some(date), clock: None });
+        return Some(Stamp { date: Some(date), clock: None, two: false });
     }
     if let Some((first, rest)) = text.split_once(['T', ' ', '_'])
         && let (Some(date), Some(clock)) = (date(first), clock(rest.trim_start()))
     {
-        return Some(Stamp { date: Some(date), clock: Some(clock) });
+        return Some(Stamp { date: Some(date), clock: Some(clock), two: false });
     }
-    clock(text).map(|clock| Stamp { date: None, clock: Some(clock) })
+    let two = text.bytes().filter(|byte| *byte == b':').count() == 1
+        && text.bytes().all(|byte| byte.is_ascii_digit() || byte == b':');
+    clock(text).map(|clock| Stamp { date: None, clock: Some(clock), two })
 }
 
 fn date(text: &str) -> Option<Date> {
@@ -134,6 +159,25 @@ fn zone(text: &str) -> Option<(&str, i64)> {
 fn nanoseconds(digits: &str) -> Option<i64> {
     let nine: String = digits.chars().chain(std::iter::repeat('0')).take(9).collect();
     if are_digits(digits) { nine.parse().ok() } else { None }
+}
+
+/// Makes the clocks of two numbers what is said of them.
+///
+/// # Errors
+/// Nothing is said, and no other stamp of the column has a date or seconds.
+pub fn settle(stamps: &mut [Option<Stamp>], options: &Options) -> Result<(), Unclear> {
+    let all = || stamps.iter().flatten().filter(|stamp| stamp.date.is_none());
+    match options.clock {
+        _ if !all().any(|stamp| stamp.two) => {}
+        Some(ClockForm::MinutesSeconds) => {
+            for stamp in stamps.iter_mut().flatten().filter(|stamp| stamp.two) {
+                stamp.clock = stamp.clock.map(|clock| clock / 60);
+            }
+        }
+        None if all().all(|stamp| stamp.two) => return Err(Unclear::Clock),
+        _ => {}
+    }
+    Ok(())
 }
 
 /// The order of the dates of a column: said, or the only one that its dates allow.

@@ -2,10 +2,11 @@
 
 use std::ops::Range;
 
-use super::dialect::{Line, Separator, is_row};
+use super::Text;
+use super::dialect::{Line, is_row};
 use super::header::Heading;
-use super::stamps::{self, DAY, Stamp};
-use super::{Text, numbers};
+use super::numbers::{self, Marks};
+use super::stamps::{self, DAY, Stamp, Unclear};
 use crate::data::cells::shortened;
 use crate::data::faults::Faults;
 use crate::foreign::{Channel, NANOSECONDS, Options, Table};
@@ -15,7 +16,7 @@ use crate::problem::Problem;
 enum Column {
     /// No cell was filled so far: this many rows.
     Unknown(usize),
-    Numbers(Vec<f64>),
+    Numbers(Vec<f64>, Marks),
     /// Stamps, `None` where empty.
     Stamps(Vec<Option<Stamp>>),
     /// Text, with the first of it.
@@ -26,8 +27,9 @@ enum Column {
 type Unfit = (&'static str, &'static str, Option<&'static str>);
 
 impl Column {
-    /// Adds a cell.
-    fn add(&mut self, word: &str, decimal: char) -> Result<(), Unfit> {
+    /// Adds the cell of a row.
+    fn add(&mut self, row: usize, word: &str, text: &Text<'_>) -> Result<(), Unfit> {
+        let decimal = text.dialect.decimal;
         if let Self::Unknown(empty) = self {
             match numbers::read(word, decimal) {
                 numbers::Cell::Empty => {
@@ -38,7 +40,7 @@ impl Column {
                     Some(_) => *self = Self::Stamps(vec![None; *empty]),
                     None => *self = Self::Text(shortened(word)),
                 },
-                _ => *self = Self::Numbers(vec![f64::NAN; *empty]),
+                _ => *self = Self::Numbers(vec![f64::NAN; *empty], Marks::default()),
             }
         }
         match self {
@@ -48,23 +50,33 @@ impl Column {
                 let says = "is not a time stamp as in the rows before";
                 found.push(Some(stamps::read(word).ok_or(("not-a-number", says, None))?));
             }
-            Self::Numbers(found) => found.push(match numbers::read(word, decimal) {
-                numbers::Cell::Number(number) => number,
-                numbers::Cell::Empty => f64::NAN,
-                other => return Err(unfit(other, word)),
-            }),
+            Self::Numbers(found, marks) => {
+                let number = match numbers::read(word, decimal) {
+                    numbers::Cell::Number(number) => number,
+                    numbers::Cell::Empty => f64::NAN,
+                    // A decimal mark that is stated leaves no question.
+                    numbers::Cell::Thousands(number) if text.options.decimal.is_some() => number,
+                    other => return Err(unfit(other, word)),
+                };
+                marks.see(row, word, decimal);
+                found.push(number);
+            }
         }
         Ok(())
     }
 }
 
+/// Help where a mark can be read in two ways.
+const DECIMAL: &str =
+    "say in the mapping what the decimal mark is: `format: {decimal: comma}` or `{decimal: point}`";
+
 /// A cell that is no number among numbers.
 fn unfit(cell: numbers::Cell, word: &str) -> Unfit {
     let (code, says, help) = match cell {
-        numbers::Cell::Thousands => (
+        numbers::Cell::Thousands(_) => (
             "thousands",
-            "has marks between its thousands",
-            "export the numbers without them: they cannot be told from decimal marks",
+            "has marks between its thousands, or another decimal mark than other numbers",
+            DECIMAL,
         ),
         numbers::Cell::NotFinite => {
             ("not-finite", "is not a finite number", "leave the cell empty where there is no value")
@@ -94,12 +106,12 @@ pub fn read(
         rows.iter().filter(|line| is_row(**line, text.options)).copied().collect();
     let mut columns: Vec<Column> = (0..text.dialect.columns).map(|_| Column::Unknown(0)).collect();
     let mut faults = Faults::new(text.shown);
-    for line in &rows {
+    for (number, line) in rows.iter().enumerate() {
         let found = row(text, *line).and_then(|cells| {
             let mut each = columns.iter_mut().zip(&headings).zip(cells);
             each.try_for_each(|((column, heading), cell)| {
                 let word = &line.text[cell.clone()];
-                column.add(word, text.dialect.decimal).map_err(|(code, fact, help)| {
+                column.add(number, word, text).map_err(|(code, fact, help)| {
                     let says = format!("`{}`: `{}` {fact}", heading.name, shortened(word));
                     text.fault(code, says, *line, cell).help_if(help)
                 })
@@ -107,6 +119,19 @@ pub fn read(
         });
         if let Err(problem) = found {
             faults.push(|| problem);
+        }
+    }
+    for (index, (column, heading)) in columns.iter().zip(&headings).enumerate() {
+        let Column::Numbers(_, marks) = column else { continue };
+        let unclear = marks.unclear().filter(|_| text.options.decimal.is_none());
+        let place =
+            unclear.and_then(|at| Some((rows[at], row(text, rows[at]).ok()?[index].clone())));
+        if let Some((line, cell)) = place {
+            let (name, word) = (&heading.name, shortened(&line.text[cell.clone()]));
+            let says = format!(
+                "`{name}`: `{word}` may have a decimal mark or one between thousands: its column has numbers below 1000 without a mark as well"
+            );
+            faults.push(|| text.fault("thousands", says, line, cell).help(DECIMAL));
         }
     }
     faults.finish(())?;
@@ -119,9 +144,6 @@ fn row(text: &Text<'_>, line: Line<'_>) -> Result<Vec<Range<usize>>, Problem> {
     if cells.len() == wanted {
         return Ok(cells);
     }
-    if let Some(fixed) = fixed(text, line.text) {
-        return Ok(fixed);
-    }
     let place = match cells.get(wanted) {
         Some(extra) => extra.start..line.text.len(),
         None => cells.last().cloned().unwrap_or(0..0),
@@ -129,26 +151,6 @@ fn row(text: &Text<'_>, line: Line<'_>) -> Result<Vec<Range<usize>>, Problem> {
     let label = if cells.len() > wanted { "beyond the last column" } else { "the last value" };
     let says = format!("the row has {} values; the rows of this file have {wanted}", cells.len());
     Err(text.fault("ragged-row", says, line, place).label(label))
-}
-
-/// Cells of fixed width, which may touch: `-1.500000E+03-1.380000E+03`.
-fn fixed(text: &Text<'_>, line: &str) -> Option<Vec<Range<usize>>> {
-    let (length, columns) = (line.trim_end().len(), text.dialect.columns);
-    if text.dialect.separator != Separator::Blanks
-        || length == 0
-        || !length.is_multiple_of(columns)
-        || !line.is_ascii()
-    {
-        return None;
-    }
-    let width = length / columns;
-    let cells = (0..columns).map(|column| {
-        let cell = &line[column * width..(column + 1) * width];
-        let start = column * width + cell.len() - cell.trim_start().len();
-        let number = numbers::read(cell.trim(), text.dialect.decimal);
-        matches!(number, numbers::Cell::Number(_)).then(|| start..start + cell.trim().len())
-    });
-    cells.collect()
 }
 
 /// Columns of numbers and times as channels.
@@ -169,7 +171,7 @@ fn finish(
     for (index, (column, heading)) in columns.into_iter().zip(headings).enumerate() {
         let name = heading.name.clone();
         let channel = match column {
-            Column::Numbers(values) => {
+            Column::Numbers(values, _) => {
                 let Heading { unit, other_unit, comment, .. } = heading;
                 Ok(Channel { values, unit, other_unit, comment, ..Channel::default() })
             }
@@ -181,9 +183,8 @@ fn finish(
                 if let Some((day, days)) = days.as_ref().filter(|_| only_clock(&stamps)) {
                     of_dates = *day;
                     for (stamp, day) in stamps.iter_mut().zip(days) {
-                        *stamp = stamp
-                            .zip(*day)
-                            .map(|(stamp, day)| Stamp { date: day.date, clock: stamp.clock });
+                        *stamp =
+                            stamp.zip(*day).map(|(stamp, day)| Stamp { date: day.date, ..stamp });
                     }
                 }
                 let (values, since) = times(text, rows, &stamps, of_dates, &heading)?;
@@ -217,12 +218,16 @@ fn times(
     of_dates: usize,
     Heading { name, span, .. }: &Heading,
 ) -> Result<Times, Problem> {
-    let (values, since) = seconds(text.options, stamps).ok_or_else(|| {
-        let says =
-            format!("the dates of `{name}` can be read with the day or with the month first");
-        let problem = Problem::error("date-order", says).help(
-            "state the order in the mapping: `format: {dates: dmy}` or `format: {dates: mdy}`",
-        );
+    let (values, since) = seconds(text.options, stamps).map_err(|unclear| {
+        let (code, can, help) = match unclear {
+            Unclear::Order => (
+                "date-order",
+                format!("the dates of `{name}` can be read with the day or with the month first"),
+                "state the order in the mapping: `format: {dates: dmy}` or `format: {dates: mdy}`",
+            ),
+            Unclear::Clock => ("clock-form", format!("the times of `{name}` {CLOCK}"), CLOCK_HELP),
+        };
+        let problem = Problem::error(code, can).help(help);
         match span {
             Some(span) => problem.at(span),
             None => problem,
@@ -252,10 +257,19 @@ fn only_dates(stamps: &[Option<Stamp>]) -> bool {
     stamps.iter().flatten().all(|stamp| stamp.date.is_some() && stamp.clock.is_none())
 }
 
-/// The times of stamps; `None` if the order of day and month is not known.
-fn seconds(options: &Options, stamps: &[Option<Stamp>]) -> Option<Times> {
+const CLOCK: &str = "can be hours and minutes, or minutes and seconds";
+const CLOCK_HELP: &str =
+    "state it in the mapping: `format: {clock: mm:ss}` or `format: {clock: hh:mm}`";
+
+/// The times of stamps.
+///
+/// # Errors
+/// What is not known of them.
+fn seconds(options: &Options, stamps: &[Option<Stamp>]) -> Result<Times, Unclear> {
     let dates: Vec<stamps::Date> = stamps.iter().flatten().filter_map(|stamp| stamp.date).collect();
-    let order = stamps::order(&dates, options).ok()?;
+    let order = stamps::order(&dates, options).map_err(|()| Unclear::Order)?;
+    let mut stamps = stamps.to_vec();
+    stamps::settle(&mut stamps, options)?;
     let (mut first, mut before, mut nights) = (None, None, 0);
     let values = stamps.iter().map(|stamp| {
         let Some(stamp) = stamp else { return f64::NAN };
@@ -272,15 +286,25 @@ fn seconds(options: &Options, stamps: &[Option<Stamp>]) -> Option<Times> {
         (time - *first.get_or_insert(time)) as f64 / NANOSECONDS as f64
     });
     let values = values.collect();
-    Some((values, first))
+    Ok((values, first))
 }
 
 /// The times of texts, if all that are filled are time stamps.
+///
+/// # Errors
+/// Why the column is left out.
 #[cfg(feature = "foreign")]
-pub fn stamps_from_first(cells: &[&str], options: &Options) -> Option<Times> {
+pub fn stamps_from_first(cells: &[&str], options: &Options) -> Result<Times, String> {
     let read = |cell: &&str| {
         if cell.trim().is_empty() { Some(None) } else { stamps::read(cell.trim()).map(Some) }
     };
     let found: Option<Vec<Option<Stamp>>> = cells.iter().map(read).collect();
-    seconds(options, &found.filter(|found| found.iter().any(Option::is_some))?)
+    let found = found.filter(|found| found.iter().any(Option::is_some));
+    seconds(options, &found.ok_or("its cells are text")?).map_err(|unclear| match unclear {
+        Unclear::Order => {
+            "its dates can be read with the day or with the month first: `format: {dates: dmy}`"
+                .into()
+        }
+        Unclear::Clock => format!("its times {CLOCK}: {CLOCK_HELP}"),
+    })
 }

@@ -7,8 +7,8 @@ use crate::problem::{Problem, error};
 use crate::source::{Span, Spanned};
 use crate::units::{Dimension, Unit};
 use crate::yaml::{
-    Entries, FromNode, Hertz, Key, Metres, Node, OneOrMore, Ratio, Reader, Seconds, Value, fields,
-    span_of_value,
+    Entries, FromNode, Hertz, Key, Metres, Node, OneOrMore, Ratio, Reader, Seconds, Value, Words,
+    fields, span_of_value,
 };
 
 /// Largest drift of a clock: a watch crystal is below 100 ppm, and 1 % is a wrong rate.
@@ -134,6 +134,8 @@ fields! {
         "threshold" threshold: Option<f64>,
         "start" start: Option<Stated<Metres>>,
         "match" matched: Option<Match>,
+        /// What is done where the distance jumps, as kilometre posts do.
+        "jumps" jumps: Option<Spanned<Jumps>>,
         "unit" unit: Option<Node>,
         "factor" factor: Option<Node>,
         "offset" offset: Option<Node>,
@@ -144,18 +146,30 @@ fields! {
 /// Keys that the channel itself takes.
 const OF_CHANNEL: [&str; 4] = ["unit", "factor", "offset", "table"];
 
-/// The distance, and its match with the track file.
-#[derive(Clone, Debug)]
-pub struct SideDistance(pub Option<Distance>, pub Option<Match>);
+/// What is done where a distance jumps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Jumps {
+    /// It goes on from the sample before.
+    RunOn,
+}
+
+impl Words for Jumps {
+    const WORDS: &'static [(&'static str, Self)] = &[("run on", Self::RunOn)];
+}
+
+/// The distance, its match with the track file, and what is done where it jumps.
+#[derive(Clone, Debug, Default)]
+pub struct SideDistance(pub Option<Distance>, pub Option<Match>, pub Option<Jumps>);
 
 impl FromNode<&Sections> for SideDistance {
     fn from_node(reader: &mut Reader<'_, &Sections>, key: &Key, node: &Node) -> Option<Self> {
         if !matches!(node.value, Value::Map(_)) {
             let channel = ChannelMap::from_node(reader, key, node);
-            return Some(Self(channel.map(Distance::Channel), None));
+            return Some(Self(channel.map(Distance::Channel), None, None));
         }
         let written = Written::from_node(reader, key, node)?;
-        Some(Self(way(reader, key, node, &written), written.matched))
+        let jumps = written.jumps.as_ref().map(|jumps| jumps.value);
+        Some(Self(way(reader, key, node, &written), written.matched, jumps))
     }
 }
 
@@ -181,6 +195,7 @@ fn way(
         ("every", way == "from trigger"),
         ("threshold", way == "from trigger"),
         ("start", way != "from"),
+        ("jumps", way == "from"),
     ] {
         if let Some(other) = node.get(what).filter(|_| !belongs) {
             let says = format!("`{what}` has no meaning for a distance with `{way}`");

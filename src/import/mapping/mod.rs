@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 pub use channels::{ChannelMap, Channels, Term};
 pub use convention::{Common, Convention, Opposite, Turning, find as find_convention};
-pub use distance::{Distance, Match, Time};
+pub use distance::{Distance, Jumps, Match, Time};
 pub use paths::Paths;
 pub use read::read;
 pub use runs::{Drift, Runs};

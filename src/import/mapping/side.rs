@@ -1,7 +1,7 @@
 //! One side of the campaign: the measurement or the simulation.
 
 use super::channels::{AS_NAMED, Channels};
-use super::distance::{Distance, Match, SideDistance, SideTime, Time};
+use super::distance::{Distance, Jumps, Match, SideDistance, SideTime, Time};
 use super::runs::Drift;
 use super::sections::{self, Sections};
 use super::stated::Stated;
@@ -31,6 +31,7 @@ pub struct Side {
     pub time: Time,
     pub distance: Option<Distance>,
     pub matched: Option<Match>,
+    pub jumps: Option<Jumps>,
     /// Wanted sampling rate, and where it is stated.
     pub rate: Option<Spanned<Hertz>>,
     pub channels: Channels,
@@ -112,7 +113,7 @@ pub fn read(reader: &mut Reader<'_, &Sections>, kind: RecordKind, mapping: &Node
     }
     let time = written.time.map(|time| time.0);
     let time = time.unwrap_or_else(|| Time::from_file(Vec::new(), key.span.clone()));
-    let SideDistance(distance, matched) = written.distance.unwrap_or(SideDistance(None, None));
+    let SideDistance(distance, matched, jumps) = written.distance.unwrap_or_default();
     if let Some(rate) = written.rate.as_ref().filter(|rate| rate.value.0 <= 0.0) {
         reader.fault("out-of-range", "the rate must be above zero", &rate.span);
     }
@@ -156,6 +157,7 @@ pub fn read(reader: &mut Reader<'_, &Sections>, kind: RecordKind, mapping: &Node
         time,
         distance,
         matched,
+        jumps,
         rate: written.rate,
         channels,
         offsets: written.offsets.map(|offsets| offsets.value),

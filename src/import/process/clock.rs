@@ -239,6 +239,10 @@ fn time_unit(recording: &Recording<'_>, channel: &Channel) -> Result<Unit, (&'st
 
 /// None of the names of the time is in a table.
 fn no_time(table: &Table, first: &Spanned<String>, file: &str) -> Problem {
+    if let Some((_, why)) = table.left_out.iter().find(|(name, _)| *name == first.value) {
+        let says = format!("{file}: `{}` is no channel: {why}", first.value);
+        return error("no-channel", says, &first.span);
+    }
     let known = table.channels.iter().map(|channel| channel.name.as_str());
     let says = format!("{file} has no channel `{}`", first.value);
     let problem = error("unknown-channel", says, &first.span);

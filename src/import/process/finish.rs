@@ -2,7 +2,8 @@
 
 use super::clock::Grid;
 use super::recording::Recording;
-use super::{Column, Made, Values, few, short, times};
+use super::{Column, Made, Values, distance, few, short, times};
+use crate::import::mapping::Distance;
 use crate::problem::{Problem, Severity, error};
 use crate::units::{Dimension, Unit};
 
@@ -51,7 +52,22 @@ pub fn finish(
     if let Some(values) = at.filter(|_| faults.is_empty()) {
         let (first, last) =
             (values.first().copied().unwrap_or(0.0), values.last().copied().unwrap_or(0.0));
-        if let Some(row) = (1..values.len()).find(|&row| values[row] <= values[row - 1]) {
+        let is_channel = matches!(side.distance, Some(Distance::Channel(_)));
+        let mut jumps = distance::jumps(&times, &values).filter(|_| is_channel);
+        if let Some(row) = jumps.next() {
+            let says = format!(
+                "the distance jumps at {} s, from {} m to {} m{}",
+                short(times[row]),
+                short(values[row - 1]),
+                short(values[row]),
+                match jumps.count() {
+                    0 => String::new(),
+                    more => format!(", and {more} more times"),
+                }
+            );
+            let help = "kilometre posts jump where a line was rebuilt: `distance: {from: ..., jumps: run on}` goes on with the distance before, and sections after the jump are given by that";
+            faults.push(recording.fault("distance-jumps", &says, &side.span).help(help));
+        } else if let Some(row) = (1..values.len()).find(|&row| values[row] <= values[row - 1]) {
             let says = format!(
                 "the distance does not increase at {} s: {} m after {} m",
                 short(times[row]),

@@ -212,3 +212,120 @@ fn an_index_is_a_part_of_the_name() {
     );
     assert_eq!(columns[1].1[..4], [0.0, -0.1, -0.2, -0.3]);
 }
+
+/// 990, 997, 1.004: decimal marks or marks of thousands. A mark that is stated decides.
+#[test]
+fn marks_of_thousands_are_a_question() {
+    let whole = |format: &str| {
+        format!(
+            "  files: thousands-whole-numbers.csv\n{format}  time: {{from: t, unit: ms}}\n  channels: {{Q: {{from: Q, unit: N}}}}\n"
+        )
+    };
+    let text = refused(&whole(""), "thousands");
+    assert!(text.contains("`Q`: `1.004` may have a decimal mark"), "{text}");
+    assert_eq!(
+        imported(&whole("  format: {decimal: comma}\n"))[1].1[..4],
+        [990.0, 997.0, 1004.0, 1011.0]
+    );
+    assert_eq!(
+        imported(&whole("  format: {decimal: point}\n"))[1].1[..4],
+        [990.0, 997.0, 1.004, 1.011]
+    );
+    // Another column has decimal commas.
+    let beside =
+        |format: &str| whole(format).replace("thousands-whole-numbers", "thousands-beside-comma");
+    let text = refused(&beside(""), "thousands");
+    assert!(text.contains("`1.990` has marks between its thousands"), "{text}");
+    let columns = imported(
+        &beside("  format: {decimal: comma}\n").replace("{Q: ", "{v: {from: v, unit: m/s}, Q: "),
+    );
+    assert_eq!((columns[1].1[1], columns[2].1[1]), (30.01, 1997.0));
+    let forces = |format: &str| {
+        format!(
+            "  files: thousands-of-forces.csv\n{format}  time: {{rate: 200 Hz}}\n  distance: Weg\n  channels: {{Y: Y_1R, Q: Q_1R}}\n"
+        )
+    };
+    refused(&forces(""), "thousands");
+    let columns = imported(&forces("  format: {decimal: comma}\n"));
+    assert_eq!((columns[1].1[0], columns[2].1[13], columns[3].1[0]), (100.0, 1047.0, 54_000.0));
+}
+
+/// 00:01 is a minute or a second.
+#[test]
+fn times_of_two_numbers_are_a_question() {
+    let side = |format: &str| {
+        format!(
+            "  files: minutes-and-seconds.csv\n{format}  time: t\n  channels: {{Q: {{from: Q, unit: N}}}}\n"
+        )
+    };
+    let text = refused(&side(""), "clock-form");
+    assert!(text.contains("hours and minutes, or minutes and seconds"), "{text}");
+    for (clock, times) in [("mm:ss", [0.0, 1.0, 2.0]), ("hh:mm", [0.0, 60.0, 120.0])] {
+        assert_eq!(imported(&side(&format!("  format: {{clock: {clock}}}\n")))[0].1[..3], times);
+    }
+    // The same as texts in cells of Excel.
+    let sheet = |format: &str| side(format).replace(".csv", ".xlsx");
+    assert!(refused(&sheet(""), "no-channel").contains("minutes and seconds"));
+    assert_eq!(imported(&sheet("  format: {clock: mm:ss}\n"))[0].1[..3], [0.0, 1.0, 2.0]);
+}
+
+/// Seconds since 1970 in steps of 5 ms keep their steps.
+#[test]
+fn seconds_since_1970_keep_their_digits() {
+    let columns = imported(
+        "  files: epoch-seconds.csv\n  time: {from: t, unit: s}\n  channels: {Q: {from: Q, unit: N}}\n",
+    );
+    let times = &columns[0].1;
+    assert_eq!(times.len(), 400);
+    for (row, time) in times.iter().enumerate() {
+        let wanted = 1_893_456_000.0 + 0.005 * row as f64;
+        assert!((time - wanted).abs() < 1e-6, "{row}: {time}");
+    }
+}
+
+/// Five channels over two lines; the values are those of the file.
+#[test]
+fn rows_over_two_lines_are_told_and_read() {
+    let side = |format: &str, q: &str| {
+        format!(
+            "  files: wrapped-rows.dat\n{format}  time: {{rate: 200 Hz}}\n  channels: {{Y: {{from: Y11, unit: kN}}, Q: {{from: {q}, unit: kN}}}}\n"
+        )
+    };
+    let text = refused(&side("", "Q11"), "wrapped-rows");
+    assert!(text.contains("wrapped-rows.dat:3:1") && text.contains("{lines per row: 2}"), "{text}");
+    let columns = imported(&side("  format: {lines per row: 2}\n", "Q11"));
+    assert_eq!((columns[1].1.len(), columns[2].1.len()), (20, 20));
+    assert_eq!(
+        (columns[1].1[..2].to_vec(), columns[2].1[..2].to_vec()),
+        (vec![3.0, 3.079_98], vec![54.0, 54.034_99])
+    );
+    refused(&side("  format: {lines per row: 1}\n", "Q11"), "ragged-row");
+}
+
+#[test]
+fn columns_of_fixed_width_may_touch() {
+    let columns = imported(
+        "  files: touching-columns.dat\n  time: {from: t, unit: s}\n  channels: {F: {from: F, unit: N}, G: {from: G, unit: N}}\n",
+    );
+    let at = |row: usize| [columns[0].1[row], columns[1].1[row], columns[2].1[row]];
+    assert_eq!((at(0), at(3)), ([0.0, -1000.0, -2000.0], [0.03, -1003.0, -2003.0]));
+}
+
+/// Kilometre posts that jump by -119.8 m and by +386 m.
+#[test]
+fn jumps_of_the_distance_are_told() {
+    for (file, after, step) in [("post-back", 12_020.2, -119.8), ("post-forward", 12_526.2, 386.2)]
+    {
+        let side = |distance: &str| {
+            format!(
+                "  files: {file}.csv\n  time: Zeit\n  distance: {distance}\n  channels: {{Y: Y11}}\n"
+            )
+        };
+        let text = refused(&side("km"), "distance-jumps");
+        assert!(text.contains(&format!("jumps at 1.005 s, from 12140 m to {after} m")), "{text}");
+        let columns = imported(&side("{from: km, jumps: run on}"));
+        let distance = &columns[1].1;
+        assert!((distance[99] - 12_149.8).abs() < 1e-6, "{step}: {distance:?}");
+        assert!(distance.windows(2).all(|pair| (pair[1] - pair[0] - 0.2).abs() < 1e-6));
+    }
+}
