@@ -7,7 +7,7 @@
 
 use std::sync::LazyLock;
 
-use fishplate::report::document::{Block, Cell, Chapter, Column, Document, Fact, Run, Table, Text};
+use fishplate::report::document::{Block, Cell, Chapter, Document, Fact, Run, Table, Text};
 use fishplate::report::figure::canvas::{Canvas, Font, Group};
 use fishplate::report::figure::figures;
 use fishplate::report::html::html;
@@ -50,7 +50,6 @@ fn compare(text: &str, harmless: &[String], page: fn(&str) -> String) -> Vec<Str
 }
 
 fn small(text: &str) -> String {
-    let columns = vec![Column::text(text), Column::short(text), Column::number(text)];
     let styled = [Run::Strong, Run::Emphasis, Run::Code, Run::Quiet, Run::Hash]
         .into_iter()
         .fold(Text::symbol(text), |all, style| all.then(style(text.into())));
@@ -61,7 +60,7 @@ fn small(text: &str) -> String {
         Block::list([text]),
         Block::Facts(vec![vec![Fact::new(text, text)]]),
         Block::Listing(vec![text.into()]),
-        Table::new(text, columns, [row]).into(),
+        Table::new(text).text(text).short(text).number(text).rows([row]).into(),
     ];
     let document = Document {
         title: text.into(),

@@ -47,10 +47,9 @@ fn scores(blind: &Blind) -> Chapter {
             score.low.zip(score.high).map_or(Cell::BLANK, |(low, high)| between(low, high));
         cells![score.name, score.cases, number(score.value), interval]
     });
-    let mut columns = vec![Column::text("Score")];
     let numbers = ["Cases, cells or sections", "Value", "95 % interval"];
-    columns.extend(numbers.map(Column::number));
-    let table = Table::new("Shares with Wilson's intervals", columns, rows);
+    let table =
+        Table::new("Shares with Wilson's intervals").text("Score").numbers(numbers).rows(rows);
     Chapter::new("scores", "Scores", vec![table.into()])
 }
 
@@ -70,30 +69,28 @@ fn cases(blind: &Blind) -> Chapter {
             number(case.shrink_true)
         ]
     });
-    let mut columns = vec![
-        Column::text("Campaign"),
-        Column::short("Kind"),
-        Column::text("Truth"),
-        Column::text("Verdict"),
-        Column::text("Named first"),
-        Column::short("Right"),
-    ];
-    let numbers = ["d", "Least d", "Parameter error", "Removed, stated", "Removed, true"];
-    columns.extend(numbers.map(Column::number));
     let caption = "All campaigns; d is the whitened size of the true effects; least d is the smallest part of one of several effects that the others do not reproduce";
-    Chapter::new("cases", "Cases", vec![Table::new(caption, columns, rows).into()])
+    let table = Table::new(caption)
+        .text("Campaign")
+        .short("Kind")
+        .text("Truth")
+        .text("Verdict")
+        .text("Named first")
+        .short("Right")
+        .numbers(["d", "Least d", "Parameter error", "Removed, stated", "Removed, true"])
+        .rows(rows);
+    Chapter::new("cases", "Cases", vec![table.into()])
 }
 
 fn confusion(blind: &Blind) -> Chapter {
     let rows = blind.confusion.iter().flat_map(|(truth, named)| {
         named.iter().map(move |(name, count)| cells![truth, name, (*count)])
     });
-    let columns = vec![
-        Column::text("Truth"),
-        Column::text("Named first, or verdict"),
-        Column::number("Cases"),
-    ];
-    let table = Table::new("Counts", columns, rows);
+    let table = Table::new("Counts")
+        .text("Truth")
+        .text("Named first, or verdict")
+        .number("Cases")
+        .rows(rows);
     Chapter::new("confusion", "Confusion of effects", vec![table.into()])
 }
 
@@ -107,7 +104,7 @@ fn detectability(blind: &Blind) -> Chapter {
         ]
     });
     let columns = ["d from", "Cases", "Named first", "95 % interval of the share"];
-    let table = Table::new("Single effects", columns.map(Column::number).to_vec(), rows);
+    let table = Table::new("Single effects").numbers(columns).rows(rows);
     Chapter::new("detectability", "Score against detectability", vec![table.into()])
 }
 
@@ -122,6 +119,6 @@ fn calibration(blind: &Blind) -> Chapter {
     });
     let columns = ["Stated", "Cases", "Right", "95 % interval of the share"];
     let caption = "Mean probability of the first cause, and number of cases in which it is right";
-    let table = Table::new(caption, columns.map(Column::number).to_vec(), rows);
+    let table = Table::new(caption).numbers(columns).rows(rows);
     Chapter::new("calibration", "Probabilities", vec![table.into()])
 }

@@ -21,14 +21,13 @@ fn drawn(found: &Diagnosis) -> Table {
     let row = |(hidden, result, share): (&str, &str, Share)| -> Vec<Cell> {
         cells![hidden, result, share.count, share.of]
     };
-    let columns = vec![
-        Column::text("Hidden"),
-        Column::text("Result"),
-        Column::number("Number"),
-        Column::number("Of"),
-    ];
     let caption = "What the search names in campaigns drawn from the allowed difference of this one, with known effects of random size; the consistency checks are left out";
-    Table::new(caption, columns, rows.map(row))
+    Table::new(caption)
+        .text("Hidden")
+        .text("Result")
+        .number("Number")
+        .number("Of")
+        .rows(rows.map(row))
 }
 
 /// Number of tolerances that are told.
@@ -50,14 +49,6 @@ pub fn detectable(found: &Diagnosis) -> Vec<Block> {
             one.unit
         ]
     };
-    let columns = vec![
-        Column::text("Effect"),
-        Column::text("Parameter").breaks(12),
-        Column::number("Neutral"),
-        Column::number("Detectable below"),
-        Column::number("Detectable above"),
-        Column::short("Unit"),
-    ];
     let length = found.calibration.length.map_or_else(
         || "in the drawn campaigns, no length of the change suffices".into(),
         |length| {
@@ -70,7 +61,13 @@ pub fn detectable(found: &Diagnosis) -> Vec<Block> {
     let caption = format!(
         "Values from which this campaign can show each effect, if it is the only one: nine of ten are named ({length}; a dash where the range of the parameter ends before)"
     );
-    let sizes = Table::new(caption, columns, found.detectable.iter().map(row));
+    let sizes = Table::new(caption)
+        .text("Effect")
+        .text("Parameter")
+        .breaks(12)
+        .numbers(["Neutral", "Detectable below", "Detectable above"])
+        .short("Unit")
+        .rows(found.detectable.iter().map(row));
     let mut blocks = vec![drawn(found).into(), sizes.into()];
     let used: Vec<String> = found
         .tolerances
@@ -93,13 +90,15 @@ pub fn detectable(found: &Diagnosis) -> Vec<Block> {
             .nearest
             .iter()
             .map(|one| cells![one.says, Cell::number(one.evidence, Format::Fixed(1)), one.wants]);
-        let columns = vec![
-            Column::text("Effect"),
-            Column::number("Evidence"),
-            Column::text("Criterion not met"),
-        ];
         let caption = "Effects closest to being named, each alone, for the remaining gap";
-        blocks.push(Table::new(caption, columns, rows).into());
+        blocks.push(
+            Table::new(caption)
+                .text("Effect")
+                .number("Evidence")
+                .text("Criterion not met")
+                .rows(rows)
+                .into(),
+        );
     }
     blocks
 }

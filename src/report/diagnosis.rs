@@ -159,17 +159,16 @@ fn cells(found: &Diagnosis) -> Table {
             format!("{p}{}", if place.significant { " *" } else { "" })
         ]
     });
-    let mut columns = vec![
-        Column::short("Quantity"),
-        Column::text("Position"),
-        Column::short("Band"),
-        Column::name("Zone"),
-    ];
-    columns.extend(["Mean", "Rms", "Share", "p"].map(Column::number));
     let caption = "Cells by their share of the gap, tested against noise, declared tolerances and the allowed model discrepancy; \
                    * significant at a false discovery rate of 5 %. Mean and rms are over the sections and channels \
                    of a cell: of sign(measured) (simulated - measured) for quasi-static values, of rms simulated / measured - 1 for bands";
-    Table::new(caption, columns, rows)
+    Table::new(caption)
+        .short("Quantity")
+        .text("Position")
+        .short("Band")
+        .name("Zone")
+        .numbers(["Mean", "Rms", "Share", "p"])
+        .rows(rows)
 }
 
 /// With columns for the effects if any are named.
@@ -190,13 +189,14 @@ fn invariants(all: &[Invariant], named: bool) -> Table {
     };
     let caption = "Sums of quasi-static forces that only some causes can change, simulated - measured, mean over the sections; \
                    allowed is one standard deviation, which is the unit of the deviations (after: including the effects)";
-    let mut columns =
-        vec![Column::text("Sum"), Column::text("Symmetry"), Column::number("As simulated")];
-    columns.extend(named.then(|| Column::number("With the effects")));
-    let deviation = if named { "Deviation before" } else { "Deviation" };
-    columns.extend(["Allowed", deviation].map(Column::number));
-    columns.extend(named.then(|| Column::number("Deviation after")));
-    Table::new(caption, columns, all.iter().map(row))
+    Table::new(caption)
+        .text("Sum")
+        .text("Symmetry")
+        .number("As simulated")
+        .when(named, |table| table.number("With the effects"))
+        .numbers(["Allowed", if named { "Deviation before" } else { "Deviation" }])
+        .when(named, |table| table.number("Deviation after"))
+        .rows(all.iter().map(row))
 }
 
 /// Trends that are significant before or after, or else the closest ones.
@@ -271,15 +271,14 @@ fn trends(found: &Diagnosis) -> Vec<Block> {
         },
         if named { ", with the effects" } else { "" }
     );
-    let mut columns = vec![
-        Column::text("Quantity"),
-        Column::short("Band"),
-        Column::text("Over"),
-        Column::number("As simulated"),
-    ];
-    columns.extend(named.then(|| Column::number("With effects")));
-    columns.push(Column::number("r"));
-    let table = Table::new(caption, columns, listed.iter().take(TRENDS).map(row));
+    let table = Table::new(caption)
+        .text("Quantity")
+        .short("Band")
+        .text("Over")
+        .number("As simulated")
+        .when(named, |table| table.number("With effects"))
+        .number("r")
+        .rows(listed.iter().take(TRENDS).map(row));
     let table = (!listed.is_empty()).then(|| table.into());
     std::iter::once(Block::text(text)).chain(table).collect()
 }
@@ -302,10 +301,11 @@ fn shapes(all: &[Shape]) -> Table {
     };
     let caption = "Dynamic content as recorded, measured over simulated, with 90 % intervals by resampling the sections; and the share of the \
                    difference of the spectra that is common to all sections, compared at equal frequency or at equal wavelength";
-    let mut columns = vec![Column::text("Quantity")];
-    columns.extend(["Rms", "Peak", "Crest", "Common in Hz", "Common in m"].map(Column::number));
-    columns.push(Column::text("Scales with"));
-    Table::new(caption, columns, all.iter().map(row))
+    Table::new(caption)
+        .text("Quantity")
+        .numbers(["Rms", "Peak", "Crest", "Common in Hz", "Common in m"])
+        .text("Scales with")
+        .rows(all.iter().map(row))
 }
 
 /// A size with its unit.
@@ -362,20 +362,18 @@ fn found_by(effect: &NamedEffect) -> String {
 fn causes(found: &Diagnosis) -> Chapter {
     let mut blocks = Vec::new();
     if let Some(first) = found.causes.first() {
-        let columns = vec![
-            Column::short("Rank"),
-            Column::text("Effect"),
-            Column::short("Parameter"),
-            Column::number("Assumed"),
-            Column::number("Found"),
-            Column::number("90 % interval"),
-            Column::number("Probability"),
-            Column::number("Evidence"),
-            Column::short("Possible"),
-        ];
         let caption = "Candidate causes; evidence is twice the logarithm of the Bayes factor against no effect";
         let rows = found.causes.iter().flat_map(cause_rows);
-        blocks.push(Table::new(caption, columns, rows).into());
+        blocks.push(
+            Table::new(caption)
+                .short("Rank")
+                .text("Effect")
+                .short("Parameter")
+                .numbers(["Assumed", "Found", "90 % interval", "Probability", "Evidence"])
+                .short("Possible")
+                .rows(rows)
+                .into(),
+        );
         blocks.push(Block::heading("How the effects were found, and their stability"));
         blocks.push(Block::list(first.effects.iter().map(found_by)));
     }
@@ -434,7 +432,6 @@ fn statistics(shrink: &Shrink) -> Table {
             Cell::or_missing(quantity.variance_explained_above_noise.map(share)),
         ]
     };
-    let mut columns = vec![Column::text("Quantity")];
     let numbers = [
         "Mean before",
         "after",
@@ -444,11 +441,10 @@ fn statistics(shrink: &Shrink) -> Table {
         "Variance removed",
         "above noise",
     ];
-    columns.extend(numbers.map(Column::number));
     let caption = "Mean and standard deviation divided by their limits, before and with the effects; fraction of their root mean square that is removed, \
                    with a 90 % interval by resampling sections; fraction of the squared differences that is removed, in total and \
                    above the declared noise of the channels";
-    Table::new(caption, columns, shrink.quantities.iter().map(row))
+    Table::new(caption).text("Quantity").numbers(numbers).rows(shrink.quantities.iter().map(row))
 }
 
 fn signals(found: &Diagnosis) -> Option<Chapter> {
@@ -491,7 +487,6 @@ fn how(found: &Diagnosis) -> Chapter {
         ("Seed", how.seed.to_string()),
     ];
     let rows = rows.map(|(name, value)| cells![name, value]);
-    let columns = vec![Column::text("Setting"), Column::text("Value")];
-    let table = Table::new("Settings of the diagnosis", columns, rows);
+    let table = Table::new("Settings of the diagnosis").text("Setting").text("Value").rows(rows);
     Chapter::new("how", "Method and settings", vec![table.into()])
 }

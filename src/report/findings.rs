@@ -2,7 +2,7 @@
 
 use indexmap::IndexSet;
 
-use super::document::{Cell, Column, Symbols, Table, Tone};
+use super::document::{Cell, Symbols, Table, Tone};
 use super::number;
 use crate::report::document::cells;
 use crate::result::{Consequence, Finding, Occurrence};
@@ -39,16 +39,25 @@ pub fn table(findings: &[Finding]) -> Table {
             Cell::from(row.consequence).toned(row.tone)
         ]
     };
-    let columns = vec![
-        Column::name("Rule").wide(0.9),
-        Column::name("Channel").wide(0.8).sparse(),
-        Column::name("Sections").wide(0.8).sparse(),
-        Column::text("Finding").wide(2.2),
-        Column::text("Likely cause").wide(1.9).sparse(),
-        Column::text("Consequence").wide(0.8),
-    ];
     let rows = findings.iter().map(Row::of).map(row);
-    Table::new("Findings on the data", columns, rows).size(7.5)
+    Table::new("Findings on the data")
+        .name("Rule")
+        .wide(0.9)
+        .name("Channel")
+        .wide(0.8)
+        .sparse()
+        .name("Sections")
+        .wide(0.8)
+        .sparse()
+        .text("Finding")
+        .wide(2.2)
+        .text("Likely cause")
+        .wide(1.9)
+        .sparse()
+        .text("Consequence")
+        .wide(0.8)
+        .rows(rows)
+        .size(7.5)
 }
 
 impl Row {

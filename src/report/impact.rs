@@ -94,13 +94,13 @@ fn flips(found: &Impact) -> Chapter {
             Cell::sentence(sets),
         ]
     };
-    let columns = vec![
-        Column::text("Campaign").breaks(NAME),
-        Column::short("Before"),
-        Column::short("After"),
-        Column::text("Rules that suffice"),
-    ];
-    let table = Table::new("Verdicts that change, and why", columns, found.flips.iter().map(row));
+    let table = Table::new("Verdicts that change, and why")
+        .text("Campaign")
+        .breaks(NAME)
+        .short("Before")
+        .short("After")
+        .text("Rules that suffice")
+        .rows(found.flips.iter().map(row));
     let mut blocks = vec![Block::text(about), table.into()];
     let short: Vec<String> = found
         .flips
@@ -121,13 +121,8 @@ fn limits(margin: &Margin) -> [Cell; 4] {
     [rule, digits(margin.value), digits(margin.flips_at), number::unit(&margin.unit).into()]
 }
 
-fn limit_columns() -> [Column; 4] {
-    [
-        Column::text("Limit"),
-        Column::number("In the new protocol"),
-        Column::number("Another verdict beyond"),
-        Column::short("Unit"),
-    ]
+fn limit_columns(table: Table) -> Table {
+    table.text("Limit").numbers(["In the new protocol", "Another verdict beyond"]).short("Unit")
 }
 
 fn margins(found: &Impact) -> Chapter {
@@ -142,23 +137,22 @@ fn margins(found: &Impact) -> Chapter {
         flip.margin.iter().map(row).collect::<Vec<_>>()
     };
     let rows: Vec<Vec<Cell>> = found.flips.iter().flat_map(of_flip).collect();
-    let campaign = || Column::text("Campaign").breaks(NAME);
+    let campaign = |caption: &str| Table::new(caption).text("Campaign").breaks(NAME);
     if rows.is_empty() && !found.flips.is_empty() {
         blocks.push(Block::text("No limit by itself changes the verdict of a campaign above."));
     } else if !rows.is_empty() {
-        let columns = [campaign()].into_iter().chain(limit_columns());
-        let columns = columns.chain([Column::short("Changed")]).collect();
-        blocks.push(Table::new("Limits that change a verdict back", columns, rows).into());
+        let table = limit_columns(campaign("Limits that change a verdict back"));
+        blocks.push(table.short("Changed").rows(rows).into());
     }
     if !found.near.is_empty() {
         let row = |near: &Near| {
             let first = [Cell::from(&near.campaign), (&near.verdict).into()].into_iter();
             first.chain(limits(&near.margin)).collect::<Vec<_>>()
         };
-        let columns = [campaign(), Column::short("Verdict")].into_iter().chain(limit_columns());
         let caption =
             "How close the others came: of each campaign the nearest of the changed limits";
-        blocks.push(Table::new(caption, columns.collect(), found.near.iter().map(row)).into());
+        let table = limit_columns(campaign(caption).short("Verdict"));
+        blocks.push(table.rows(found.near.iter().map(row)).into());
     }
     Chapter::new("margins", "How close it is", blocks)
 }
@@ -167,15 +161,16 @@ fn shares(found: &Impact) -> Chapter {
     let percent = |share: f64| Cell::number(100.0 * share, Format::Fixed(1));
     let row =
         |of: &Share| cells![of.by, of.group, of.campaigns, percent(of.before), percent(of.after)];
-    let columns = vec![
-        Column::text("By"),
-        Column::text("Group"),
-        Column::number("Campaigns"),
-        Column::number("Before").unit("%"),
-        Column::number("After").unit("%"),
-    ];
     let about = "Campaigns whose verdict holds. Groups are the words that the protocol declares for vehicles and sections, where a campaign has one word for all of them.";
-    let table = Table::new("Verdicts that hold", columns, found.shares.iter().map(row));
+    let table = Table::new("Verdicts that hold")
+        .text("By")
+        .text("Group")
+        .number("Campaigns")
+        .number("Before")
+        .unit("%")
+        .number("After")
+        .unit("%")
+        .rows(found.shares.iter().map(row));
     Chapter::new("shares", "Shares", vec![Block::text(about), table.into()])
 }
 
@@ -187,14 +182,14 @@ fn not_replayed(found: &Impact) -> Option<Chapter> {
         let sections = if of.sections { "yes" } else { "no" };
         cells![of.campaign, of.quantities.join(", "), sections]
     };
-    let columns = vec![
-        Column::text("Campaign").breaks(NAME),
-        Column::text("Quantities"),
-        Column::short("Sections too"),
-    ];
     let about = "Of these campaigns there are values and no records, and one of the protocols makes the values of these quantities in another way, or selects and checks sections in another way. Nothing is assumed of them.";
     let rows = found.not_replayed.iter().map(row);
-    let table = Table::new("Campaigns that were not replayed", columns, rows);
+    let table = Table::new("Campaigns that were not replayed")
+        .text("Campaign")
+        .breaks(NAME)
+        .text("Quantities")
+        .short("Sections too")
+        .rows(rows);
     Some(Chapter::new("not-replayed", "Not replayed", vec![Block::text(about), table.into()]))
 }
 
@@ -205,14 +200,18 @@ fn changes(found: &Impact) -> Chapter {
         let alone = reason.unwrap_or_else(|| "yes".into());
         vec![Cell::sentence(&of.rule), words(&of.before), words(&of.after), alone]
     };
-    let columns = ["Rule", "Before", "After", "Can be applied alone"].map(Column::text).to_vec();
     let about = format!(
         "The rules in which {} differs from {}, as far as they can touch a verdict. Besides, {} in titles, notes, sources and rules that nothing uses.",
         found.new.name,
         found.old.name,
         count(found.only_words, "difference")
     );
-    let table = Table::new("Changed rules", columns, found.rules.iter().map(row));
+    let table = Table::new("Changed rules")
+        .text("Rule")
+        .text("Before")
+        .text("After")
+        .text("Can be applied alone")
+        .rows(found.rules.iter().map(row));
     Chapter::new("rules", "Changed rules", vec![Block::text(about), table.into()])
 }
 
@@ -226,14 +225,14 @@ fn archive(found: &Impact) -> Chapter {
             Cell::or_missing(of.after.as_ref()),
         ]
     };
-    let columns = vec![
-        Column::text("Campaign").breaks(NAME),
-        Column::number("Sections"),
-        Column::short("From"),
-        Column::short("Before"),
-        Column::short("After"),
-    ];
-    let table = Table::new("The archive", columns, found.archive.iter().map(row));
+    let table = Table::new("The archive")
+        .text("Campaign")
+        .breaks(NAME)
+        .number("Sections")
+        .short("From")
+        .short("Before")
+        .short("After")
+        .rows(found.archive.iter().map(row));
     let about = "The hash of a campaign under Provenance is that of the hashes of its files, each on a line; impact.json has them all.";
     Chapter::new("archive", "Archive", vec![Block::text(about), table.into()])
 }

@@ -18,24 +18,17 @@ pub fn chapter(found: &Comparison) -> Option<Chapter> {
         let rows: Vec<Vec<Cell>> =
             found.agreement.iter().filter(|one| one.of == of).map(row).collect();
         if !rows.is_empty() {
-            blocks.push(Table::new(caption, columns(of), rows).into());
+            let table = Table::new(caption)
+                .when(of == "metrics", |table| table.text("Protocol"))
+                .text("A")
+                .text("B")
+                .numbers(["Sections", "Both met", "A only", "B only", "Neither", "Spearman"])
+                .when(of == "protocols", |table| table.number("Same verdict"))
+                .rows(rows);
+            blocks.push(table.into());
         }
     }
     Some(Chapter::new("agreement", "Agreement", blocks))
-}
-
-fn columns(of: &str) -> Vec<Column> {
-    let mut columns = Vec::new();
-    if of == "metrics" {
-        columns.push(Column::text("Protocol"));
-    }
-    columns.extend(["A", "B"].map(Column::text));
-    let counts = ["Sections", "Both met", "A only", "B only", "Neither", "Spearman"];
-    columns.extend(counts.map(Column::number));
-    if of == "protocols" {
-        columns.push(Column::number("Same verdict"));
-    }
-    columns
 }
 
 fn row(one: &Agreement) -> Vec<Cell> {

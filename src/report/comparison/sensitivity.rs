@@ -39,9 +39,6 @@ pub fn chapter(found: &Comparison) -> Option<Chapter> {
         let alt = format!("Curves of the sensitivity to {name}; the numbers are in the table.");
         blocks.push(Figure::new(format!("sensitivity-{at}"), caption, alt, 200).into());
     }
-    let mut columns = vec![Column::text("Metric"), Column::short("Disturbance")];
-    columns.extend(first.sizes.iter().map(|size| Column::number(format!("Size {size}"))));
-    columns.push(Column::number("Verdicts changed"));
     let row = |one: &Sensitivity| {
         let mut row = cells![Cell::sentence(metric(one, found)), Cell::sentence(&one.disturbance)];
         row.extend(one.values.iter().map(|value| three(*value)));
@@ -51,6 +48,12 @@ pub fn chapter(found: &Comparison) -> Option<Chapter> {
     };
     let caption = "Sensitivity by size; at the end, the number of verdicts of the protocol that change at each size";
     let rows = found.sensitivity.iter().filter(|one| one.limited).map(row);
-    blocks.push(Table::new(caption, columns, rows).into());
+    let table = Table::new(caption)
+        .text("Metric")
+        .short("Disturbance")
+        .numbers(first.sizes.iter().map(|size| format!("Size {size}")))
+        .number("Verdicts changed")
+        .rows(rows);
+    blocks.push(table.into());
     Some(Chapter::new("sensitivity", "Sensitivity", blocks))
 }

@@ -6,11 +6,11 @@ use crate::result::comparison::{
     Applicability, Cell as OnProtocol, Compared, Comparison, Difference, OnCampaign, Tried,
 };
 
-/// The column of the campaign. The cover names a single one: on paper, it is not told again in every
-/// row.
-fn campaign(found: &Comparison) -> Column {
-    let column = Column::text("Campaign").breaks(NAME);
-    if found.campaigns.len() == 1 { column.only(Medium::Screen) } else { column }
+/// With the column of the campaign. The cover names a single one: on paper, it is not told again in
+/// every row.
+fn campaign(table: Table, found: &Comparison) -> Table {
+    let single = found.campaigns.len() == 1;
+    table.text("Campaign").breaks(NAME).when(single, |table| table.only(Medium::Screen))
 }
 
 /// Letters of a name that is not broken.
@@ -27,19 +27,16 @@ pub fn verdicts(found: &Comparison) -> Chapter {
             cell.sections_used.into(),
         ]
     };
-    let columns = vec![
-        campaign(found),
-        Column::text("Protocol").breaks(NAME),
-        Column::short("Verdict"),
-        Column::text("Decided by"),
-        Column::number("Ratio"),
-        Column::number("Sections used"),
-    ];
-    let table =
-        Table::new("Verdicts of the protocols", columns, found.verdicts.iter().map(row)).into();
+    let table = campaign(Table::new("Verdicts of the protocols"), found)
+        .text("Protocol")
+        .breaks(NAME)
+        .short("Verdict")
+        .text("Decided by")
+        .numbers(["Ratio", "Sections used"])
+        .rows(found.verdicts.iter().map(row));
     let about =
         "A verdict is decided by the requirement with the largest ratio of value and limit.";
-    let mut blocks = vec![Block::text(about), table];
+    let mut blocks = vec![Block::text(about), table.into()];
     let open: Vec<String> = found
         .verdicts
         .iter()
@@ -78,25 +75,20 @@ pub fn applicability(found: &Comparison) -> Chapter {
             Cell::or_missing(one.symmetric.map(|is| if is { "yes" } else { "no" }))
         ]
     };
-    let mut columns = vec![
-        Column::text("Protocol").breaks(24),
-        Column::text("Metric").breaks(24),
-        Column::number("Quantities"),
-    ];
-    columns.extend(
-        [
-            "Number, one quantity",
-            "Number, one section",
-            "Verdict, one quantity",
-            "Verdict, one section",
-            "Scale",
-            "Symmetric",
-        ]
-        .map(Column::short),
-    );
     let about = "Each entry was found by trying. All but one quantity, or all but one section, are withheld: does the metric have a number, and the protocol a verdict? Scale: with both records doubled, a relative metric keeps its values and an absolute one doubles them. Symmetric: with simulation and measurement exchanged, the magnitude stays.";
-    let rows = found.applicability.iter().map(row);
-    let table = Table::new("Applicability of the metrics", columns, rows);
+    let table = Table::new("Applicability of the metrics")
+        .text("Protocol")
+        .breaks(24)
+        .text("Metric")
+        .breaks(24)
+        .number("Quantities")
+        .short("Number, one quantity")
+        .short("Number, one section")
+        .short("Verdict, one quantity")
+        .short("Verdict, one section")
+        .short("Scale")
+        .short("Symmetric")
+        .rows(found.applicability.iter().map(row));
     Chapter::new("applicability", "Applicability", vec![Block::text(about), table.into()])
 }
 
@@ -138,17 +130,12 @@ fn rules(found: &Comparison) -> Table {
             Cell::or_missing(one.limits_changed),
         ]
     };
-    let columns = vec![
-        Column::text("Rule"),
-        Column::text("Difference"),
-        campaign(found),
-        Column::short("Verdict before"),
-        Column::text("Verdict after"),
-        Column::number("Largest ratio"),
-        Column::number("Limits changed"),
-    ];
-    let caption = "Rules that differ, and the verdict with each of them";
-    Table::new(caption, columns, found.differences.iter().map(row))
+    let table = Table::new("Rules that differ, and the verdict with each of them");
+    campaign(table.text("Rule").text("Difference"), found)
+        .short("Verdict before")
+        .text("Verdict after")
+        .numbers(["Largest ratio", "Limits changed"])
+        .rows(found.differences.iter().map(row))
 }
 
 /// Most protocols side by side in a table.
@@ -176,9 +163,6 @@ pub fn ratios(found: &Comparison) -> Chapter {
                 *largest = ratio;
             }
         }
-        let mut columns =
-            vec![campaign(found), Column::short("Quantity"), Column::text("Estimate")];
-        columns.extend(names.iter().map(|name| Column::number(*name).wide(1.0).breaks(NAME)));
         let row = |([campaign, symbol, estimate], ratios): ([&str; 3], Vec<Option<f64>>)| {
             let mut row = cells![campaign, Cell::symbol(symbol, ""), Cell::sentence(estimate)];
             row.extend(ratios.into_iter().map(|ratio| match ratio {
@@ -188,7 +172,12 @@ pub fn ratios(found: &Comparison) -> Chapter {
             row
         };
         let caption = "Largest ratio of value and limit over the groups of each requirement";
-        blocks.push(Table::new(caption, columns, rows.into_iter().map(row)).into());
+        let table = campaign(Table::new(caption), found)
+            .short("Quantity")
+            .text("Estimate")
+            .each(names, |table, name| table.number(name).wide(1.0).breaks(NAME))
+            .rows(rows.into_iter().map(row));
+        blocks.push(table.into());
     }
     Chapter::new("ratios", "Ratios by quantity", blocks)
 }
@@ -197,10 +186,16 @@ pub fn compared(found: &Comparison) -> Chapter {
     let protocol =
         |one: &Compared| cells![one.name, one.title, Cell::sentence(&one.criterion), one.sha256];
     let campaign = |one: &OnCampaign| cells![one.name, one.sections];
-    let columns = ["Name", "Title", "Criterion", "SHA-256"].map(Column::text).to_vec();
     let caption = "Protocols, with the SHA-256 of their text";
-    let protocols = Table::new(caption, columns, found.protocols.iter().map(protocol));
-    let columns = vec![Column::text("Name"), Column::number("Sections")];
-    let campaigns = Table::new("Campaigns", columns, found.campaigns.iter().map(campaign));
+    let protocols = Table::new(caption)
+        .text("Name")
+        .text("Title")
+        .text("Criterion")
+        .text("SHA-256")
+        .rows(found.protocols.iter().map(protocol));
+    let campaigns = Table::new("Campaigns")
+        .text("Name")
+        .number("Sections")
+        .rows(found.campaigns.iter().map(campaign));
     Chapter::new("compared", "Protocols and campaigns", vec![protocols.into(), campaigns.into()])
 }

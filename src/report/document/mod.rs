@@ -16,7 +16,7 @@ pub(crate) use cell::cells;
 pub use cell::{Cell, Format};
 pub use finding::{Finding, Tone};
 pub use sentence::Symbols;
-pub use table::{Column, Row, Table};
+pub use table::{Row, Table};
 pub use text::{Run, Text};
 
 /// Program and version that write a document.

@@ -63,85 +63,6 @@ enum Width {
 const UNBROKEN: usize = 30;
 const UNBROKEN_NAME: usize = 10;
 
-impl Column {
-    fn new(title: impl Into<String>, width: Width, numeric: bool, breaks: usize) -> Self {
-        Self {
-            title: title.into(),
-            unit: String::new(),
-            above: None,
-            numeric,
-            width,
-            breaks,
-            names_row: None,
-            sparse: false,
-            once: false,
-            only: None,
-        }
-    }
-
-    /// A column of texts, which takes its part of the width.
-    pub fn text(title: impl Into<String>) -> Self {
-        Self::new(title, Width::ByText, false, UNBROKEN)
-    }
-
-    /// A column of texts not wider than these.
-    pub fn short(title: impl Into<String>) -> Self {
-        Self::new(title, Width::Least, false, UNBROKEN)
-    }
-
-    /// A column of names of users, which may be long words.
-    pub fn name(title: impl Into<String>) -> Self {
-        Self::new(title, Width::Least, false, UNBROKEN_NAME)
-    }
-
-    /// A column of numbers, aligned at the decimal point.
-    pub fn number(title: impl Into<String>) -> Self {
-        Self::new(title, Width::Least, true, UNBROKEN)
-    }
-
-    /// With a share of the width that is left.
-    pub fn wide(self, share: f64) -> Self {
-        Self { width: Width::Share(share), ..self }
-    }
-
-    /// With a unit as printed after its title; none for a dimensionless number.
-    pub fn unit(self, unit: &str) -> Self {
-        let unit = number::unit(unit);
-        let none = unit == number::NONE;
-        Self { unit: if none { String::new() } else { unit }, ..self }
-    }
-
-    /// With neighbours of the same under one title.
-    pub fn under(self, title: impl Into<String>) -> Self {
-        Self { above: Some(title.into()), ..self }
-    }
-
-    /// Words from this length on may be broken.
-    pub fn breaks(self, from: usize) -> Self {
-        Self { breaks: from, ..self }
-    }
-
-    /// Whether its cells name the row; those of the first column do if nothing is stated.
-    pub fn names_row(self, names: bool) -> Self {
-        Self { names_row: Some(names), ..self }
-    }
-
-    /// Left out if all its cells are empty.
-    pub fn sparse(self) -> Self {
-        Self { sparse: true, ..self }
-    }
-
-    /// On paper, only in the first of rows that begin with the same cell.
-    pub fn once(self) -> Self {
-        Self { once: true, ..self }
-    }
-
-    /// Printed in one medium only.
-    pub fn only(self, medium: Medium) -> Self {
-        Self { only: Some(medium), ..self }
-    }
-}
-
 /// A row of a table.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Row {
@@ -184,14 +105,125 @@ const LETTERS_KEPT: usize = 2400;
 const MANY: usize = 9;
 
 impl Table {
-    pub fn new<R: Into<Row>>(
-        caption: impl Into<Text>,
-        columns: Vec<Column>,
-        rows: impl IntoIterator<Item = R>,
+    /// Without columns and rows.
+    pub fn new(caption: impl Into<Text>) -> Self {
+        Self {
+            caption: caption.into(),
+            columns: Vec::new(),
+            rows: Vec::new(),
+            class: "sortable",
+            size: None,
+            abreast: None,
+            kept: KEPT,
+        }
+    }
+
+    /// With one more column, to the right of the others.
+    fn column(mut self, title: impl Into<String>, width: Width, breaks: usize) -> Self {
+        self.columns.push(Column {
+            title: title.into(),
+            unit: String::new(),
+            above: None,
+            numeric: false,
+            width,
+            breaks,
+            names_row: None,
+            sparse: false,
+            once: false,
+            only: None,
+        });
+        self
+    }
+
+    /// With a column of texts, which takes its part of the width.
+    pub fn text(self, title: impl Into<String>) -> Self {
+        self.column(title, Width::ByText, UNBROKEN)
+    }
+
+    /// With a column of texts not wider than these.
+    pub fn short(self, title: impl Into<String>) -> Self {
+        self.column(title, Width::Least, UNBROKEN)
+    }
+
+    /// With a column of names of users, which may be long words.
+    pub fn name(self, title: impl Into<String>) -> Self {
+        self.column(title, Width::Least, UNBROKEN_NAME)
+    }
+
+    /// With a column of numbers, aligned at the decimal point.
+    pub fn number(self, title: impl Into<String>) -> Self {
+        self.short(title).last(|column| column.numeric = true)
+    }
+
+    /// With columns of numbers.
+    pub fn numbers<T: Into<String>>(self, titles: impl IntoIterator<Item = T>) -> Self {
+        self.each(titles, Self::number)
+    }
+
+    /// With columns for each of several things.
+    pub fn each<T>(
+        self,
+        all: impl IntoIterator<Item = T>,
+        with: impl FnMut(Self, T) -> Self,
     ) -> Self {
-        let rows = rows.into_iter().map(Into::into).collect();
-        let caption = caption.into();
-        Self { caption, columns, rows, class: "sortable", size: None, abreast: None, kept: KEPT }
+        all.into_iter().fold(self, with)
+    }
+
+    /// With columns under a condition.
+    pub fn when(self, holds: bool, with: impl FnOnce(Self) -> Self) -> Self {
+        if holds { with(self) } else { self }
+    }
+
+    fn last(mut self, change: impl FnOnce(&mut Column)) -> Self {
+        self.columns.last_mut().map(change);
+        self
+    }
+
+    /// The last column with a share of the width that is left.
+    pub fn wide(self, share: f64) -> Self {
+        self.last(|column| column.width = Width::Share(share))
+    }
+
+    /// The last column with a unit as printed after its title; none for a dimensionless number.
+    pub fn unit(self, unit: &str) -> Self {
+        let unit = number::unit(unit);
+        self.last(|column| column.unit = if unit == number::NONE { String::new() } else { unit })
+    }
+
+    /// The last column with neighbours of the same under one title.
+    pub fn under(self, title: impl Into<String>) -> Self {
+        self.last(|column| column.above = Some(title.into()))
+    }
+
+    /// Words of the last column from this length on may be broken.
+    pub fn breaks(self, from: usize) -> Self {
+        self.last(|column| column.breaks = from)
+    }
+
+    /// Whether the cells of the last column name the row; those of the first column do if nothing
+    /// is stated.
+    pub fn names_row(self, names: bool) -> Self {
+        self.last(|column| column.names_row = Some(names))
+    }
+
+    /// The last column is left out if all its cells are empty.
+    pub fn sparse(self) -> Self {
+        self.last(|column| column.sparse = true)
+    }
+
+    /// On paper, the last column is filled only in the first of rows that begin with the same cell.
+    pub fn once(self) -> Self {
+        self.last(|column| column.once = true)
+    }
+
+    /// The last column is printed in one medium only.
+    pub fn only(self, medium: Medium) -> Self {
+        self.last(|column| column.only = Some(medium))
+    }
+
+    /// With its rows, each with a cell for each column.
+    pub fn rows<R: Into<Row>>(self, rows: impl IntoIterator<Item = R>) -> Self {
+        Self { rows: rows.into_iter().map(Into::into).collect(), ..self }
     }
 
     /// With another class of the style sheet.

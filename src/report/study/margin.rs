@@ -184,15 +184,16 @@ pub fn chapters(found: &MarginStudy, words: &VerdictWords) -> Vec<Chapter> {
             found_by(margin)
         ]
     };
-    let columns = vec![
-        Column::text("Change").breaks(NAME),
-        Column::short("Is").sparse(),
-        Column::text("Verdict stays"),
-        Column::text("Beyond"),
-        Column::text("Found"),
-    ];
     let caption = format!("Changes within which the verdict stays '{}'", words.word(found.verdict));
-    let table = Table::new(caption, columns, found.margin.iter().map(row));
+    let table = Table::new(caption)
+        .text("Change")
+        .breaks(NAME)
+        .short("Is")
+        .sparse()
+        .text("Verdict stays")
+        .text("Beyond")
+        .text("Found")
+        .rows(found.margin.iter().map(row));
     let figure = Figure::new(
         "margins",
         "The range of each change within which the verdict stays, with a triangle where it flips; gains, and limits, are drawn to the same scale, all others each to that of its search",
@@ -228,15 +229,14 @@ fn probable(share: f64, found: &Probability) -> Chapter {
             one.columns.len().to_string()
         ]
     };
-    let columns = vec![
-        Column::name("Channel"),
-        Column::short("Error"),
-        Column::short("Standard uncertainty"),
-        Column::short("Errors"),
-        Column::number("Columns"),
-    ];
     let caption = "Uncertainties that were drawn, as campaign.yaml declares them";
-    let drawn = Table::new(caption, columns, found.channels.iter().map(of));
+    let drawn = Table::new(caption)
+        .name("Channel")
+        .short("Error")
+        .short("Standard uncertainty")
+        .short("Errors")
+        .number("Columns")
+        .rows(found.channels.iter().map(of));
     let mut limits: Vec<&Risk> = found.limits.iter().collect();
     limits.sort_by(|a, b| b.risk.total_cmp(&a.risk));
     let of = |one: &&Risk| -> Vec<Cell> {
@@ -256,19 +256,18 @@ fn probable(share: f64, found: &Probability) -> Chapter {
             format!("{} ({wrong})", super::percent(one.risk)).into(),
         ]
     };
-    let columns = vec![
-        Column::text("Quantity"),
-        Column::short("Statistic"),
-        Column::number("Value"),
-        Column::number("Limit"),
-        Column::short("Unit"),
-        Column::number("Std. uncertainty"),
-        Column::number("Guard band"),
-        Column::short("Value is"),
-        Column::number("Risk of false"),
-    ];
     let caption = "Every limit with the probability that its result is wrong, the largest first";
-    let risks = Table::new(caption, columns, limits.iter().map(of));
+    let risks = Table::new(caption)
+        .text("Quantity")
+        .short("Statistic")
+        .number("Value")
+        .number("Limit")
+        .short("Unit")
+        .number("Std. uncertainty")
+        .number("Guard band")
+        .short("Value is")
+        .number("Risk of false")
+        .rows(limits.iter().map(of));
     let blocks = vec![Block::text(says), Block::text(&found.method), drawn.into(), risks.into()];
     Chapter::new("probability", "Probability that the verdict is right", blocks)
 }

@@ -86,15 +86,14 @@ fn settings(study: &Study) -> Chapter {
             parameter.set_by
         ]
     };
-    let columns = vec![
-        Column::name("Name"),
-        Column::text("Meaning"),
-        Column::short("Used"),
-        Column::short("Default"),
-        Column::short("Set by"),
-    ];
     let caption = "Parameters of the protocol, values used and defaults";
-    let table = Table::new(caption, columns, study.protocol.parameters.iter().map(row));
+    let table = Table::new(caption)
+        .name("Name")
+        .text("Meaning")
+        .short("Used")
+        .short("Default")
+        .short("Set by")
+        .rows(study.protocol.parameters.iter().map(row));
     let rule = Block::text(&study.protocol.verdict_rule);
     Chapter::new("protocol", "Protocol", vec![rule, table.into()])
 }

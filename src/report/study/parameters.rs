@@ -77,14 +77,6 @@ pub fn chapters(found: &ParameterStudy, words: &VerdictWords) -> Vec<Chapter> {
         .parameters
         .iter()
         .flat_map(|parameter| parameter.values.iter().map(move |at| row(parameter, at)));
-    let columns = vec![
-        Column::text("Parameter").breaks(NAME),
-        Column::text("Value"),
-        Column::short("Verdict"),
-        Column::number("Largest ratio"),
-        Column::text("Statistic"),
-        Column::number(capital(good)),
-    ];
     let about = "Each parameter is varied individually; all others keep their baseline values. In the figure, baseline values and the parameters that affect the verdict are printed in bold.";
     let figure = Figure::new(
         "choices",
@@ -97,7 +89,15 @@ pub fn chapters(found: &ParameterStudy, words: &VerdictWords) -> Vec<Chapter> {
     let caption = format!(
         "Verdict on all sections, largest statistic divided by its limit, and share of selections with the verdict '{good}'"
     );
-    let table = Table::new(caption, columns, rows);
+    let table = Table::new(caption)
+        .text("Parameter")
+        .breaks(NAME)
+        .text("Value")
+        .short("Verdict")
+        .number("Largest ratio")
+        .text("Statistic")
+        .number(capital(good))
+        .rows(rows);
     let blocks = vec![Block::text(about), figure.into(), table.into()];
     let statistics = found.parameters.iter().map(|parameter| statistics(parameter).into());
     vec![
@@ -113,8 +113,6 @@ const ABREAST: usize = 9;
 
 fn statistics(parameter: &Varied) -> Table {
     let values: Vec<&AtValue> = parameter.values.iter().take(ABREAST).collect();
-    let mut columns = vec![Column::text("Quantity"), Column::short("Statistic")];
-    columns.extend(values.iter().map(|at| Column::number(&at.value)));
     let first = values.iter().find(|at| !at.statistics.is_empty());
     let rows = first.map_or(&[][..], |at| &at.statistics).iter().map(|one| {
         let mut row = cells![Cell::symbol(&one.symbol, ""), scoped(&one.name, &one.scope)];
@@ -133,5 +131,9 @@ fn statistics(parameter: &Varied) -> Table {
     };
     let caption =
         format!("{}: statistics of all sections divided by their limits{more}", parameter.title);
-    Table::new(caption, columns, rows)
+    Table::new(caption)
+        .text("Quantity")
+        .short("Statistic")
+        .numbers(values.iter().map(|at| &at.value))
+        .rows(rows)
 }

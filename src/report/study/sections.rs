@@ -115,15 +115,14 @@ fn strata(found: &SelectionStudy) -> Table {
             Cell::or_missing(not_used.map(|reasons| reasons.join("; "))),
         ]
     });
-    let columns = vec![
-        Column::name("Zone"),
-        Column::text("Title"),
-        Column::number("Taken"),
-        Column::number("Usable"),
-        Column::text("Sections"),
-        Column::text("Not used"),
-    ];
-    Table::new("Composition of a selection, and the sections it is drawn from", columns, rows)
+    Table::new("Composition of a selection, and the sections it is drawn from")
+        .name("Zone")
+        .text("Title")
+        .number("Taken")
+        .number("Usable")
+        .text("Sections")
+        .text("Not used")
+        .rows(rows)
 }
 
 /// The box plots, one figure for each kind of statistic.
@@ -159,15 +158,17 @@ fn spread(quantities: &[QuantitySpread], of: &str) -> Vec<Block> {
         row.push(percent(statistic.failing).into());
         row
     });
-    let mut columns = vec![Column::text("Quantity"), Column::short("Statistic")];
-    columns.extend(scopes.then(|| Column::short("Pairs")));
     let numbers = ["All", "Min", "25 %", "Median", "75 %", "Max", "Outliers", "Not met"];
-    columns.extend(numbers.map(Column::number));
     let caption = format!(
         "Statistics divided by their limits over the selections; “All” refers to all {of} together{}",
         known(&spreads)
     );
-    let table = Table::new(caption, columns, rows);
+    let table = Table::new(caption)
+        .text("Quantity")
+        .short("Statistic")
+        .when(scopes, |table| table.short("Pairs"))
+        .numbers(numbers)
+        .rows(rows);
     boxes(quantities, BOXES, "").into_iter().chain([table.into()]).collect()
 }
 
@@ -229,15 +230,17 @@ fn failing(found: &SelectionStudy) -> Vec<Block> {
     if rows.is_empty() {
         return vec![Block::text("All criteria are met in every selection that was evaluated.")];
     }
-    let columns = vec![
-        Column::text("Quantity"),
-        Column::text("Title"),
-        Column::number("Share"),
-        Column::number("Share alone"),
-    ];
     let caption = "Quantities whose criteria are not met or cannot be assessed: share of the selections, and share in which no other \
                    quantity is concerned";
-    let mut blocks = vec![Table::new(caption, columns, rows).into()];
+    let mut blocks = vec![
+        Table::new(caption)
+            .text("Quantity")
+            .text("Title")
+            .number("Share")
+            .number("Share alone")
+            .rows(rows)
+            .into(),
+    ];
     if found.worst.is_empty() {
         return blocks;
     }
@@ -249,14 +252,16 @@ fn failing(found: &SelectionStudy) -> Vec<Block> {
             worst.sections.join(", ")
         ]
     });
-    let columns = vec![
-        Column::short("Quantity"),
-        Column::short("Statistic"),
-        Column::number("Ratio to limit"),
-        Column::text("Sections of the selection"),
-    ];
     let caption = "Worst selection for each limit that is exceeded in some selection";
-    blocks.push(Table::new(caption, columns, rows).into());
+    blocks.push(
+        Table::new(caption)
+            .short("Quantity")
+            .short("Statistic")
+            .number("Ratio to limit")
+            .text("Sections of the selection")
+            .rows(rows)
+            .into(),
+    );
     blocks
 }
 
@@ -278,19 +283,21 @@ fn importance(
             Cell::number(effect(one).map(|share| 100.0 * share), Format::Fixed(2)),
         ]
     });
-    let columns = vec![
-        Column::text("Section").breaks(12),
-        Column::name("Zone"),
-        Column::number("With"),
-        Column::number("Without"),
-        Column::number("Difference, percentage points"),
-    ];
     let caption = format!(
         "Share of selections with the verdict '{}', with and without each section, sorted by the difference",
         words.good
     );
     let removal = removal.map(|removal| Block::text(worded(removal, words)));
-    removal.into_iter().chain([Table::new(caption, columns, rows).into()]).collect()
+    removal
+        .into_iter()
+        .chain([Table::new(caption)
+            .text("Section")
+            .breaks(12)
+            .name("Zone")
+            .numbers(["With", "Without", "Difference, percentage points"])
+            .rows(rows)
+            .into()])
+        .collect()
 }
 
 /// A sentence on the sets whose removal changes the verdict.
@@ -345,8 +352,7 @@ fn reduction(reduction: &Reduction) -> Chapter {
         .kept
         .iter()
         .map(|(zone, sections)| cells![zone, sections.len(), sections.join(", ")]);
-    let columns = vec![Column::name("Zone"), Column::number("Kept"), Column::text("Sections")];
-    let kept = Table::new("Sections kept", columns, kept);
+    let kept = Table::new("Sections kept").name("Zone").number("Kept").text("Sections").rows(kept);
     let scatter = reduction.scatter.iter().map(|(symbol, all, kept)| {
         cells![
             Cell::symbol(symbol, ""),
@@ -355,13 +361,10 @@ fn reduction(reduction: &Reduction) -> Chapter {
             Cell::number(kept - all, Format::Fixed(4))
         ]
     });
-    let columns = vec![
-        Column::text("Quantity"),
-        Column::number("All sections"),
-        Column::number("Sections kept"),
-        Column::number("Change"),
-    ];
-    let scatter = Table::new("Standard deviations divided by their limits", columns, scatter);
+    let scatter = Table::new("Standard deviations divided by their limits")
+        .text("Quantity")
+        .numbers(["All sections", "Sections kept", "Change"])
+        .rows(scatter);
     let blocks = vec![Block::text(about), kept.into(), scatter.into()];
     Chapter::new("reduction", "Representative sections", blocks)
 }

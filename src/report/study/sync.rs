@@ -104,19 +104,16 @@ fn shares(found: &SyncStudy, words: &VerdictWords) -> Vec<Block> {
         ),
         200,
     );
-    let columns = vec![
-        Column::number("Offset"),
-        Column::number(capital(good)),
-        Column::number("Lost"),
-        Column::number("Gained"),
-        Column::number("Selections"),
-        Column::short("All sections"),
-        Column::text("Changes"),
-    ];
     let caption = format!(
         "Influence of the synchronisation: share of selections with the verdict '{good}', share with it without the offset but not with the offset (lost), share with it only with the offset (gained), and the verdict"
     );
-    let table = Table::new(caption, columns, found.offsets.iter().map(row));
+    let table = Table::new(caption)
+        .number("Offset")
+        .number(capital(good))
+        .numbers(["Lost", "Gained", "Selections"])
+        .short("All sections")
+        .text("Changes")
+        .rows(found.offsets.iter().map(row));
     let mut blocks = vec![figure.into(), table.into()];
     let none: Vec<String> = found
         .offsets
@@ -138,9 +135,8 @@ fn shares(found: &SyncStudy, words: &VerdictWords) -> Vec<Block> {
         found.offsets.iter().flat_map(|at| lost(at, &shown(found, at.offset.value()))).collect();
     if !rows.is_empty() {
         let caption = "Sections that cannot be used at some offsets, so that the selections differ; the reason of the first of them";
-        let columns =
-            vec![Column::short("Offset"), Column::text("Sections"), Column::text("Reason")];
-        blocks.push(Table::new(caption, columns, rows).into());
+        let table = Table::new(caption).short("Offset").text("Sections").text("Reason").rows(rows);
+        blocks.push(table.into());
     }
     blocks
 }
@@ -161,8 +157,6 @@ fn lost(at: &AtOffset, offset: &str) -> Vec<Vec<Cell>> {
 }
 
 fn single_selection(found: &SyncStudy) -> Vec<Block> {
-    let mut columns = vec![Column::text("Quantity"), Column::short("Statistic")];
-    columns.extend(found.offsets.iter().map(|at| Column::number(shown(found, at.offset.value()))));
     let first = found.offsets.iter().find(|at| !at.selected.is_empty());
     let all = first.map_or(&[][..], |at| &at.selected);
     let rows = all.iter().enumerate().map(|(statistic, one)| {
@@ -179,11 +173,15 @@ fn single_selection(found: &SyncStudy) -> Vec<Block> {
         "Normalised statistics of one selection at every offset; the numbers are in the table.",
         200,
     );
-    let caption = "Statistics of a single selection divided by their limits";
+    let table = Table::new("Statistics of a single selection divided by their limits")
+        .text("Quantity")
+        .short("Statistic")
+        .numbers(found.offsets.iter().map(|at| shown(found, at.offset.value())))
+        .rows(rows);
     vec![
         Block::text(format!("One selection drawn at random: {}.", found.selection.join(", "))),
         figure.into(),
-        Table::new(caption, columns, rows).into(),
+        table.into(),
     ]
 }
 
@@ -207,16 +205,18 @@ fn estimates(found: &SyncStudy) -> Vec<Block> {
     let about = format!(
         "Estimated by cross-correlation of all filtered signals of both records of a section. The 95 % interval combines a jackknife over eighths of the section with the scatter between groups of signals that share no channel. {what}"
     );
-    let columns = vec![
-        Column::text("Section").breaks(12),
-        Column::name("Zone"),
-        Column::number("Offset"),
-        Column::number("95 % interval"),
-        Column::number("Correlation"),
-    ];
     let caption = format!(
         "Offset to be added to the axis of the measurement, in {}",
         number::unit(&found.axis_unit)
     );
-    vec![Block::text(about), Table::new(caption, columns, rows).into()]
+    vec![
+        Block::text(about),
+        Table::new(caption)
+            .text("Section")
+            .breaks(12)
+            .name("Zone")
+            .numbers(["Offset", "95 % interval", "Correlation"])
+            .rows(rows)
+            .into(),
+    ]
 }

@@ -65,20 +65,22 @@ fn says(result: &DomainResult) -> String {
 }
 
 fn table(result: &DomainResult) -> Table {
-    let mut columns = vec![
-        Column::number("No.").names_row(false),
-        Column::text("Point").wide(1.5).names_row(true),
-    ];
-    columns.push(Column::short("Result"));
-    for coordinate in &result.coordinates {
-        columns.push(Column::number(&coordinate.name).wide(1.0).unit(&coordinate.unit));
-        columns.push(Column::number("away").wide(1.0));
-    }
-    columns.push(Column::number("Distance"));
-    columns.push(Column::short("Nearest section"));
     let rows = result.points.iter().enumerate().map(|(at, point)| row(result, at + 1, point));
     let caption = "Wanted operation: values, and how far each lies from the nearest point that the sections cover. The distance is in ranges of the sections.";
-    Table::new(caption, columns, rows).size(8.0)
+    Table::new(caption)
+        .number("No.")
+        .names_row(false)
+        .text("Point")
+        .wide(1.5)
+        .names_row(true)
+        .short("Result")
+        .each(&result.coordinates, |table, one| {
+            table.number(&one.name).wide(1.0).unit(&one.unit).number("away").wide(1.0)
+        })
+        .number("Distance")
+        .short("Nearest section")
+        .rows(rows)
+        .size(8.0)
 }
 
 fn row(result: &DomainResult, nth: usize, point: &WantedPoint) -> Vec<Cell> {

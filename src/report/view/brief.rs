@@ -85,17 +85,23 @@ fn table(matrix: &Matrix<'_>, work: Option<&str>) -> Table {
         Some(cells)
     };
     let head = if single { "Quantity" } else { "Comparison" };
-    let mut columns = vec![
-        Column::text(head).wide(2.0).only(Medium::Paper),
-        Column::text(head).only(Medium::Screen).names_row(true),
-        Column::text("Filter").only(Medium::Screen),
-    ];
     let signals = matrix.columns.iter().map(|one| if one.is_empty() { "Values" } else { one });
-    columns.extend(signals.map(|signal| Column::number(signal).wide(1.0)));
     let several = if single { "" } else { "; one column for each signal" };
     let caption =
         format!("Mean of the values over the sections, smallest to largest value{several}");
-    Table::new(caption, columns, matrix.lines.iter().filter_map(row)).class("brief").size(7.0)
+    Table::new(caption)
+        .text(head)
+        .wide(2.0)
+        .only(Medium::Paper)
+        .text(head)
+        .only(Medium::Screen)
+        .names_row(true)
+        .text("Filter")
+        .only(Medium::Screen)
+        .each(signals, |table, signal| table.number(signal).wide(1.0))
+        .rows(matrix.lines.iter().filter_map(row))
+        .class("brief")
+        .size(7.0)
 }
 
 /// The mean of the values, what it came to, and their range.

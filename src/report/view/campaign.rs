@@ -57,13 +57,19 @@ fn table(caption: &str, items: &[Item]) -> Table {
     };
     let brief = items.iter().all(|item| item.name.len() + item.value.len() < SHORT);
     let abreast = brief && items.len() > ABREAST;
-    let columns = vec![
-        Column::text("Name").wide(1.0).breaks(if abreast { 16 } else { 40 }),
-        Column::text("Value").wide(if abreast { 0.8 } else { 1.6 }).only(Medium::Paper),
-        Column::text("Value").only(Medium::Screen),
-        Column::short("Unit").only(Medium::Screen),
-    ];
-    let table = Table::new(caption, columns, items.iter().map(row)).class("sortable data");
+    let table = Table::new(caption)
+        .text("Name")
+        .wide(1.0)
+        .breaks(if abreast { 16 } else { 40 })
+        .text("Value")
+        .wide(if abreast { 0.8 } else { 1.6 })
+        .only(Medium::Paper)
+        .text("Value")
+        .only(Medium::Screen)
+        .short("Unit")
+        .only(Medium::Screen)
+        .rows(items.iter().map(row))
+        .class("sortable data");
     if abreast { table.abreast(ABREAST) } else { table }
 }
 

@@ -63,15 +63,17 @@ fn list(all: &[DomainRange]) -> Table {
             ]
         })
     });
-    let columns = vec![
-        Column::text("Condition").wide(2.0).once(),
-        Column::short("Unit").once(),
-        Column::text("Sections").wide(1.0),
-        Column::number("Lowest"),
-        Column::number("Highest"),
-        Column::number("n"),
-    ];
-    Table::new(CAPTION, columns, rows).size(8.5)
+    Table::new(CAPTION)
+        .text("Condition")
+        .wide(2.0)
+        .once()
+        .short("Unit")
+        .once()
+        .text("Sections")
+        .wide(1.0)
+        .numbers(["Lowest", "Highest", "n"])
+        .rows(rows)
+        .size(8.5)
 }
 
 fn matrix(all: &[DomainRange], scopes: &[String]) -> Table {
@@ -87,9 +89,13 @@ fn matrix(all: &[DomainRange], scopes: &[String]) -> Table {
         row.extend(scopes.iter().map(|scope| Cell::or_missing(cell(scope))));
         row
     };
-    let mut columns = vec![Column::text("Condition").wide(1.2), Column::short("Unit")];
-    columns.extend(scopes.iter().map(|scope| Column::number(scope).wide(1.0).only(Medium::Paper)));
-    Table::new(CAPTION, columns, conditions(all).into_iter().map(row)).size(8.0)
+    Table::new(CAPTION)
+        .text("Condition")
+        .wide(1.2)
+        .short("Unit")
+        .each(scopes, |table, scope| table.number(scope).wide(1.0).only(Medium::Paper))
+        .rows(conditions(all).into_iter().map(row))
+        .size(8.0)
 }
 
 fn named(range: &DomainRange) -> (&str, &str) {

@@ -11,25 +11,26 @@ use crate::result::{QuantityResult, StatisticResult};
 /// The condensed limits of all quantities, each with the group that is nearest to it or farthest
 /// beyond.
 pub fn summary(view: &View<'_>) -> Table {
-    let columns = vec![
-        Column::short("Quantity"),
-        Column::text("Estimate").wide(1.5),
-        Column::short("Groups met"),
-        Column::short("Unit"),
-        Column::number("Values / n").only(Medium::Screen),
-        Column::number("Largest"),
-        Column::number("Limit"),
-        Column::number("|Value| / limit"),
-        Column::text("Where").wide(1.2),
-        Column::short("Criterion"),
-    ];
     let limits = view.found.quantities.iter().flat_map(|quantity| {
         let row = move |limit: OfLimit<'_>| row(quantity, &limit);
         estimates::condensed(quantity).into_iter().map(row).collect::<Vec<_>>()
     });
     let caption =
         "Estimates and their limits: how many groups hold, and the group with the largest ratio";
-    Table::new(caption, columns, limits).size(7.5)
+    Table::new(caption)
+        .short("Quantity")
+        .text("Estimate")
+        .wide(1.5)
+        .short("Groups met")
+        .short("Unit")
+        .number("Values / n")
+        .only(Medium::Screen)
+        .numbers(["Largest", "Limit", "|Value| / limit"])
+        .text("Where")
+        .wide(1.2)
+        .short("Criterion")
+        .rows(limits)
+        .size(7.5)
 }
 
 /// The values of the decisive group; the finding is that of all.
@@ -74,18 +75,22 @@ fn table(quantity: &QuantityResult, limit: &OfLimit<'_>, rows: &str) -> Table {
         cells.push(statistic::normalised(Some(one)));
         Row::from(cells).ending(Finding::of_statistic(Some(one)), one.reason.as_ref())
     };
-    let mut columns: Vec<Column> =
-        keys.iter().map(|key| Column::name(capital(key)).names_row(false)).collect();
-    columns.push(Column::number(format!("{rows} / n")));
-    columns.extend(["Mean", "s"].map(|title| Column::number(title).unit(&quantity.unit)));
-    columns.push(Column::number("Estimate").unit(&first.unit));
-    columns.extend(statistic::intervals().map(Column::sparse));
-    columns.push(Column::number("Limit").unit(&first.unit));
-    columns.push(Column::number("|Value| / limit"));
-    columns.push(Column::text("Finding").wide(1.0));
     let caption = caption(&format!("{} of ", number::formula(&first.title)), quantity)
         .and(format!(", limit {}", number::formula(&first.limit_printed)));
-    Table::new(caption, columns, limit.results.iter().map(row)).size(8.0)
+    let table = Table::new(caption)
+        .each(&keys, |table, key| table.name(capital(key)).names_row(false))
+        .number(format!("{rows} / n"))
+        .each(["Mean", "s"], |table, title| table.number(title).unit(&quantity.unit))
+        .number("Estimate")
+        .unit(&first.unit);
+    statistic::intervals(table, true)
+        .number("Limit")
+        .unit(&first.unit)
+        .number("|Value| / limit")
+        .text("Finding")
+        .wide(1.0)
+        .rows(limit.results.iter().map(row))
+        .size(8.0)
 }
 
 /// Head of a column with the whole scope.

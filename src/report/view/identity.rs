@@ -78,13 +78,17 @@ pub fn chapter(view: &View<'_>) -> Chapter {
         ),
         row("7.8.3.1 b)", "Statement of conformity", super::wording::sentence(found)),
     ]);
-    let columns = vec![
-        Column::short("Clause").names_row(false),
-        Column::text("Item").wide(0.5).names_row(true),
-        Column::text("Statement").wide(1.0),
-    ];
     let about = "The items follow the checklist of ISO/IEC 17025:2017, clause 7.8. An item that the campaign does not state is listed as “not stated”.";
-    let table = Table::new("Items of the report", columns, rows).class("");
+    let table = Table::new("Items of the report")
+        .short("Clause")
+        .names_row(false)
+        .text("Item")
+        .wide(0.5)
+        .names_row(true)
+        .text("Statement")
+        .wide(1.0)
+        .rows(rows)
+        .class("");
     let mut blocks = vec![Block::text(about), table.into()];
     blocks.extend(values(found));
     let title = "Identification of the report";
@@ -115,17 +119,23 @@ fn values(found: &Certification) -> Vec<Block> {
         return Vec::new();
     }
     let about = "The protocol does not have these values from a checked source, or they were set in place of its own. The verdict is provisional until each is confirmed for this edition of the protocol (“confirmed” in campaign.yaml).";
-    let columns = vec![
-        Column::text("Value of").wide(1.6),
-        Column::text("Value").wide(1.0),
-        Column::text("Clause or source").wide(1.0),
-        Column::text("Confirmed by").wide(0.7),
-    ];
     let caption = "Values to be confirmed";
     vec![
         Block::heading(caption),
         Block::text(about),
-        Table::new(caption, columns, rows).class("").size(8.0).into(),
+        Table::new(caption)
+            .text("Value of")
+            .wide(1.6)
+            .text("Value")
+            .wide(1.0)
+            .text("Clause or source")
+            .wide(1.0)
+            .text("Confirmed by")
+            .wide(0.7)
+            .rows(rows)
+            .class("")
+            .size(8.0)
+            .into(),
     ]
 }
 

@@ -182,8 +182,9 @@ pub fn chapter(view: &View<'_>) -> Chapter {
     let found = view.found;
     let known = |table: Table| (!table.rows.is_empty()).then_some(table);
     let meanings = |caption: &str, head: &str, rows: Vec<Vec<Cell>>| {
-        let columns = vec![Column::text(head).wide(0.4), Column::text("Meaning").wide(1.0)];
-        known(Table::new(caption, columns, rows).class(""))
+        known(
+            Table::new(caption).text(head).wide(0.4).text("Meaning").wide(1.0).rows(rows).class(""),
+        )
     };
     let terms = if found.quantities.is_empty() { Vec::new() } else { terms(found) };
     let terms = terms.into_iter().map(|(word, meaning)| cells![word, meaning]);
@@ -209,14 +210,18 @@ fn quantities(view: &View<'_>) -> Table {
             Cell::formula(&quantity.comparison)
         ]
     });
-    let columns = vec![
-        Column::short("Symbol"),
-        Column::text("Quantity").wide(1.5),
-        Column::short("Unit"),
-        Column::text("Signals").wide(1.1),
-        Column::text(view.words.comparison).wide(1.7),
-    ];
-    Table::new("Quantities", columns, rows).class("").size(8.0)
+    Table::new("Quantities")
+        .short("Symbol")
+        .text("Quantity")
+        .wide(1.5)
+        .short("Unit")
+        .text("Signals")
+        .wide(1.1)
+        .text(view.words.comparison)
+        .wide(1.7)
+        .rows(rows)
+        .class("")
+        .size(8.0)
 }
 
 fn channels(all: &[ChannelInfo]) -> Table {
@@ -224,13 +229,16 @@ fn channels(all: &[ChannelInfo]) -> Table {
         let note = Some(&channel.note).filter(|note| !note.is_empty());
         cells![channel.name, channel.title, number::unit(&channel.unit), Cell::or_missing(note)]
     };
-    let columns = vec![
-        Column::name("Channel"),
-        Column::text("Meaning").wide(1.2),
-        Column::short("Unit"),
-        Column::text("Sign and remarks").wide(1.6),
-    ];
-    Table::new("Channels and their signs", columns, all.iter().map(row)).class("").size(8.0)
+    Table::new("Channels and their signs")
+        .name("Channel")
+        .text("Meaning")
+        .wide(1.2)
+        .short("Unit")
+        .text("Sign and remarks")
+        .wide(1.6)
+        .rows(all.iter().map(row))
+        .class("")
+        .size(8.0)
 }
 
 fn findings(found: &Certification) -> Vec<Vec<Cell>> {

@@ -47,12 +47,16 @@ fn deviations(all: &[Deviation]) -> Block {
         let side = |text: &Option<String>, none: &str| Cell::from(text.as_deref().unwrap_or(none));
         cells![one.rule, side(&one.before, "not present"), side(&one.after, "removed")]
     };
-    let columns = vec![
-        Column::text("Rule").wide(1.1),
-        Column::text("Parent").wide(1.0),
-        Column::text("This protocol").wide(1.0),
-    ];
-    Table::new("Rules that differ in meaning", columns, all.iter().map(row)).class("").into()
+    Table::new("Rules that differ in meaning")
+        .text("Rule")
+        .wide(1.1)
+        .text("Parent")
+        .wide(1.0)
+        .text("This protocol")
+        .wide(1.0)
+        .rows(all.iter().map(row))
+        .class("")
+        .into()
 }
 
 /// What each parameter is, and whether its number is to be confirmed: against the standard, if the
@@ -74,15 +78,16 @@ fn parameters(protocol: &ProtocolInfo) -> Table {
             (&parameter.set_by).into(),
         ]
     };
-    let columns = vec![
-        Column::text("Name").wide(1.0),
-        Column::text("Meaning").wide(2.0),
-        Column::short("Used"),
-        Column::short("Default"),
-        Column::short("Set by"),
-    ];
     let caption = "Parameters of the protocol, values used and defaults";
-    Table::new(caption, columns, protocol.parameters.iter().map(row))
+    Table::new(caption)
+        .text("Name")
+        .wide(1.0)
+        .text("Meaning")
+        .wide(2.0)
+        .short("Used")
+        .short("Default")
+        .short("Set by")
+        .rows(protocol.parameters.iter().map(row))
 }
 
 fn filters(protocol: &ProtocolInfo) -> Table {
@@ -91,14 +96,17 @@ fn filters(protocol: &ProtocolInfo) -> Table {
         let source = source.map(|one| super::with_work(one, protocol.source.as_deref()));
         cells![Run::Code(filter.name.clone()), filter.title, filter.steps, Cell::or_missing(source)]
     };
-    let columns = vec![
-        Column::short("Name"),
-        Column::text("Title").wide(1.0),
-        Column::text("Steps").wide(1.2),
-        Column::text("Source").wide(1.7),
-    ];
     let rows = protocol.filters.iter().map(row);
-    Table::new("Filters with the settings used", columns, rows).class("")
+    Table::new("Filters with the settings used")
+        .short("Name")
+        .text("Title")
+        .wide(1.0)
+        .text("Steps")
+        .wide(1.2)
+        .text("Source")
+        .wide(1.7)
+        .rows(rows)
+        .class("")
 }
 
 fn graph(protocol: &ProtocolInfo) -> Option<Figure> {

@@ -86,13 +86,14 @@ fn imported(side: &ImportedSide) -> [Block; 2] {
     if !common.is_empty() {
         says = says.and(format!(" Every record: {}.", common.join("; ")));
     }
-    let columns = vec![
-        Column::name("Section"),
-        Column::short("File and its SHA-256"),
-        Column::text("What was done").wide(1.0),
-    ];
     let rows = side.records.iter().map(row);
-    let table = Table::new(format!("Imported records, {name}"), columns, rows).size(7.5);
+    let table = Table::new(format!("Imported records, {name}"))
+        .name("Section")
+        .short("File and its SHA-256")
+        .text("What was done")
+        .wide(1.0)
+        .rows(rows)
+        .size(7.5);
     [Block::text(says), table.into()]
 }
 
@@ -100,12 +101,14 @@ fn files(all: &[FileHash]) -> Table {
     let row = |file: &FileHash| -> Vec<Cell> {
         cells![file.path, file.bytes, Run::Hash(file.sha256.clone())]
     };
-    let columns = vec![
-        Column::text("File").wide(1.0).breaks(40),
-        Column::number("Bytes"),
-        Column::short("SHA-256"),
-    ];
-    Table::new("Input files and their SHA-256", columns, all.iter().map(row)).size(7.5)
+    Table::new("Input files and their SHA-256")
+        .text("File")
+        .wide(1.0)
+        .breaks(40)
+        .number("Bytes")
+        .short("SHA-256")
+        .rows(all.iter().map(row))
+        .size(7.5)
 }
 
 #[cfg(test)]

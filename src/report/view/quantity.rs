@@ -124,23 +124,27 @@ fn statistics(quantity: &QuantityResult, rows: &str) -> Table {
         ]);
         Row::from(cells).ending(Finding::of_statistic(Some(one)), one.reason.as_ref())
     };
-    let mut columns = vec![
-        Column::text("Statistic").wide(1.5).only(Medium::Paper),
-        Column::text("Statistic").only(Medium::Screen).names_row(true),
-        Column::short("Unit").only(Medium::Screen),
-        Column::name("Scope"),
-        Column::number(format!("{rows} / n")),
-        Column::number("Value"),
-    ];
-    columns.extend(statistic::intervals());
-    columns.extend([
-        Column::number("Limit"),
-        Column::text("Limit as worded").wide(1.2),
-        Column::number("|Value| / limit"),
-        Column::short("Finding"),
-    ]);
     let caption = caption("Statistics of ", quantity).and(" against their limits");
-    Table::new(caption, columns, stated(quantity).into_iter().map(row)).size(8.0)
+    let table = Table::new(caption)
+        .text("Statistic")
+        .wide(1.5)
+        .only(Medium::Paper)
+        .text("Statistic")
+        .only(Medium::Screen)
+        .names_row(true)
+        .short("Unit")
+        .only(Medium::Screen)
+        .name("Scope")
+        .number(format!("{rows} / n"))
+        .number("Value");
+    statistic::intervals(table, false)
+        .number("Limit")
+        .text("Limit as worded")
+        .wide(1.2)
+        .number("|Value| / limit")
+        .short("Finding")
+        .rows(stated(quantity).into_iter().map(row))
+        .size(8.0)
 }
 
 fn pairs(at: usize, quantity: &QuantityResult) -> Figure {

@@ -79,16 +79,17 @@ fn table(
         let reason = one.reason.as_ref()?;
         Some(number::raised(format!("{title}, {}: {}", one.scope, reason.text())))
     };
-    let head = |(title, condition, unit): &Estimate<'_>| {
+    let head = |table: Table, (title, condition, unit): &Estimate<'_>| {
         let condition = condition.map(|condition| format!(", {}", number::formula(condition)));
         let title = capital(&number::formula(title)) + &condition.unwrap_or_default();
-        Column::number(title).wide(1.0).unit(unit)
+        table.number(title).wide(1.0).unit(unit)
     };
-    let mut columns: Vec<Column> =
-        keys.iter().map(|key| Column::name(capital(key)).names_row(true)).collect();
-    columns.push(Column::number(counted));
-    columns.extend(estimates.iter().map(head));
-    let table = Table::new(caption.clone(), columns, rows.iter().map(row)).size(8.0);
+    let table = Table::new(caption.clone())
+        .each(keys, |table, key| table.name(capital(key)).names_row(true))
+        .number(counted)
+        .each(estimates, head)
+        .rows(rows.iter().map(row))
+        .size(8.0);
     let reasons: Vec<String> = rows.values().flatten().filter_map(reason).collect();
     let reasons = (!reasons.is_empty()).then(|| Block::list(reasons));
     std::iter::once(Block::from(table)).chain(reasons).collect()

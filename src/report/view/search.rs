@@ -37,14 +37,11 @@ fn runs(found: &FoundSections) -> Table {
             run.found
         ]
     };
-    let columns = vec![
-        Column::name("Run").wide(2.0),
-        Column::number("From"),
-        Column::number("To"),
-        Column::number("Places tried"),
-        Column::number("Sections found"),
-    ];
-    Table::new("Runs, and sections found in them", columns, found.runs.iter().map(row))
+    Table::new("Runs, and sections found in them")
+        .name("Run")
+        .wide(2.0)
+        .numbers(["From", "To", "Places tried", "Sections found"])
+        .rows(found.runs.iter().map(row))
 }
 
 fn rejected(all: &[Rejected], tried: usize) -> Table {
@@ -56,13 +53,13 @@ fn rejected(all: &[Rejected], tried: usize) -> Table {
             Cell::text(format!("{share:.1} %"))
         ]
     };
-    let columns = vec![
-        Column::text("Reason").wide(2.0),
-        Column::number("Places"),
-        Column::number("Share of those tried"),
-    ];
     let caption = "Places where no section begins, by the first reason; the stretches are in tables/rejected.csv";
-    Table::new(caption, columns, all.iter().map(row))
+    Table::new(caption)
+        .text("Reason")
+        .wide(2.0)
+        .number("Places")
+        .number("Share of those tried")
+        .rows(all.iter().map(row))
 }
 
 /// The sections that were kept, and the scatter of all and of these.
@@ -82,18 +79,21 @@ pub fn reduction(reduction: &Reduction) -> Vec<Block> {
         .kept
         .iter()
         .map(|(group, kept)| cells![Cell::from(name(group)).strong(), kept.len(), kept.join(", ")]);
-    let columns =
-        vec![Column::name("Group"), Column::number("Kept"), Column::text("Sections").wide(1.0)];
-    let groups = Table::new("Sections kept of each group", columns, kept);
+    let groups = Table::new("Sections kept of each group")
+        .name("Group")
+        .number("Kept")
+        .text("Sections")
+        .wide(1.0)
+        .rows(kept);
     let scatter = reduction.scatter.iter().map(|(symbol, all, kept)| {
         let ratio = |value: f64| Cell::number(value, Format::Fixed(3));
         cells![Cell::symbol(symbol, "").strong(), ratio(*all), ratio(*kept)]
     });
-    let columns = vec![
-        Column::text("Quantity").wide(1.0),
-        Column::number("All sections"),
-        Column::number("Sections kept"),
-    ];
-    let scatter = Table::new("Standard deviations divided by their limits", columns, scatter);
+    let scatter = Table::new("Standard deviations divided by their limits")
+        .text("Quantity")
+        .wide(1.0)
+        .number("All sections")
+        .number("Sections kept")
+        .rows(scatter);
     vec![Block::heading("Sections kept"), Block::text(sentence), groups.into(), scatter.into()]
 }

@@ -43,16 +43,16 @@ fn zones(all: &[ZoneResult]) -> Table {
         ])
         .in_zone(Some(&name(&zone.zone)))
     };
-    let columns = vec![
-        Column::name("Zone"),
-        Column::text("Title").wide(1.4),
-        Column::text("Condition").wide(2.0),
-        Column::number("Given"),
-        Column::number("Used"),
-        Column::number("Required"),
-        Column::short("Criterion"),
-    ];
-    Table::new("Test zones: sections used and required", columns, all.iter().map(row)).size(8.5)
+    Table::new("Test zones: sections used and required")
+        .name("Zone")
+        .text("Title")
+        .wide(1.4)
+        .text("Condition")
+        .wide(2.0)
+        .numbers(["Given", "Used", "Required"])
+        .short("Criterion")
+        .rows(all.iter().map(row))
+        .size(8.5)
 }
 
 /// Sections by zone, in the order of the zones; sections without a zone last.
@@ -104,15 +104,14 @@ fn table(sections: &[&SectionResult], caption: String) -> Table {
         let column = section.columns.iter().find(|column| column.name == name)?;
         Some(column.value.trim().to_owned()).filter(|text| !text.is_empty())
     };
-    let head = |name: &&str| {
+    let head = |table: Table, name: &&str| {
         let mut texts = sections.iter().filter_map(|section| text(section, name));
         let unit = all().find(|column| column.name == **name).and_then(|one| one.unit.as_deref());
-        let column = if texts.all(|text| number::is_number(&text)) {
-            Column::number(*name)
-        } else {
-            Column::name(*name).wide(1.0)
+        let table = match texts.all(|text| number::is_number(&text)) {
+            true => table.number(*name),
+            false => table.name(*name).wide(1.0),
         };
-        column.unit(unit.unwrap_or_default())
+        table.unit(unit.unwrap_or_default())
     };
     let axis = sections.first().map(|section| section.axis_unit.as_str()).unwrap_or_default();
     let format = Format::Fixed(number::decimals(axis, []));
@@ -125,16 +124,20 @@ fn table(sections: &[&SectionResult], caption: String) -> Table {
         );
         Row::from(cells).ending(used, section.reason.as_ref())
     };
-    let mut columns = vec![Column::name("Section").wide(1.3)];
-    columns.extend(["Start", "End", "Length"].map(|title| Column::number(title).unit(axis)));
-    columns.extend(names.iter().map(head));
-    columns.push(Column::text("Use").wide(2.0));
     let size = match names.len() {
         0..=5 => 8.5,
         6..=8 => 7.5,
         _ => 6.5,
     };
-    Table::new(caption, columns, sections.iter().map(row)).size(size)
+    Table::new(caption)
+        .name("Section")
+        .wide(1.3)
+        .each(["Start", "End", "Length"], |table, title| table.number(title).unit(axis))
+        .each(&names, head)
+        .text("Use")
+        .wide(2.0)
+        .rows(sections.iter().map(row))
+        .size(size)
 }
 
 /// Requirements, a column each.
@@ -159,13 +162,11 @@ fn checks(sections: &[&SectionResult], caption: &str) -> Vec<Table> {
             let section = Cell::from(name(&section.section)).strong();
             std::iter::once(section).chain(known.iter().map(check)).collect::<Vec<_>>()
         };
-        let title = |check: &&CheckResult| {
-            let title = if check.title.is_empty() { &check.name } else { &check.title };
-            Column::text(title).wide(1.0)
+        let head = |table: Table, check: &&CheckResult| {
+            table.text(if check.title.is_empty() { &check.name } else { &check.title }).wide(1.0)
         };
-        let section = Column::name("Section").wide(0.35);
-        let columns = std::iter::once(section).chain(known.iter().map(title)).collect();
-        Table::new(caption, columns, sections.iter().map(row)).size(7.5)
+        let table = Table::new(caption).name("Section").wide(0.35).each(known, head);
+        table.rows(sections.iter().map(row)).size(7.5)
     };
     known.chunks(CHECKS_ABREAST).map(table).collect()
 }

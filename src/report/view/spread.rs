@@ -17,17 +17,23 @@ pub fn tables(quantity: &QuantityResult) -> Vec<Table> {
     let format = Format::Fixed(decimals(quantity, spread));
     let table = |from: usize| {
         let records = spread.classes.last().map_or(&[][..], |class| part(class, from));
-        let mut columns = vec![Column::short("Sections"), Column::short("")];
-        let titles = records.iter().map(|one| name(&one.record));
-        columns.extend(titles.map(|title| Column::number(title).wide(1.0).breaks(UNBROKEN)));
-        columns.push(Column::number(format!("Max. − min. of the {between}")));
-        columns.push(Column::number(format!("s of the {between}")));
+        let head = |table: Table, one: &OfRecord| {
+            table.number(name(&one.record)).wide(1.0).breaks(UNBROKEN)
+        };
         let class = |class| rows(class, part(class, from), between, format);
         let rows: Vec<Row> = spread.classes.iter().flat_map(class).collect();
         let caption = self::caption(&format!("Spread of the {between} in "), quantity)
             .and(in_unit(quantity))
             .and(format!(": deviations from the {} of all {between}", spread.center));
-        Table::new(caption, columns, rows).class("spread").size(7.5)
+        Table::new(caption)
+            .short("Sections")
+            .short("")
+            .each(records, head)
+            .number(format!("Max. − min. of the {between}"))
+            .number(format!("s of the {between}"))
+            .rows(rows)
+            .class("spread")
+            .size(7.5)
     };
     (0..most).step_by(RECORDS).map(table).collect()
 }

@@ -50,13 +50,16 @@ pub fn normalised(statistic: Option<&StatisticResult>) -> Cell {
     Cell::number(ratio, Format::Ratio).toned(Finding::of_statistic(statistic).tone)
 }
 
-/// Columns of a confidence interval: together on paper, each end on a screen.
-pub fn intervals() -> [Column; 3] {
-    [
-        Column::number("95 % interval").only(Medium::Paper),
-        Column::number("95 % interval, low").only(Medium::Screen),
-        Column::number("high").only(Medium::Screen),
-    ]
+/// With the columns of a confidence interval: together on paper, each end on a screen.
+pub fn intervals(table: Table, sparse: bool) -> Table {
+    let columns = [
+        ("95 % interval", Medium::Paper),
+        ("95 % interval, low", Medium::Screen),
+        ("high", Medium::Screen),
+    ];
+    table.each(columns, |table, (title, medium)| {
+        table.number(title).only(medium).when(sparse, Table::sparse)
+    })
 }
 
 /// The cells of [`intervals`].

@@ -65,48 +65,50 @@ fn tables(view: &View<'_>) -> Vec<Table> {
         let others = single.filter(|one| !named.iter().any(|name| one.is_overall(name)));
         further.extend(others.map(|one| further_row(quantity, one)));
     }
-    let count = || Column::number(view.words.count);
     let mut tables = Vec::new();
     if !summary.is_empty() {
-        let columns = vec![
-            Column::text("Quantity").wide(0.75),
-            Column::short("Unit"),
-            Column::text("Filter").wide(1.6),
-            Column::text("Processing").wide(1.1),
-            Column::number("Limit std"),
-            Column::number("Limit mean"),
-            count(),
-            Column::number("Mean"),
-            Column::number("Std"),
-            Column::number("|Mean| / limit"),
-            Column::number("Std / limit"),
-            Column::text("Criterion"),
-        ];
         let caption =
             "Mean and standard deviation of the differences over all pairs, and their limits";
-        tables.push(Table::new(caption, columns, summary).class("sortable worded").size(7.5));
+        let table = Table::new(caption)
+            .text("Quantity")
+            .wide(0.75)
+            .short("Unit")
+            .text("Filter")
+            .wide(1.6)
+            .text("Processing")
+            .wide(1.1)
+            .numbers(["Limit std", "Limit mean", view.words.count, "Mean", "Std"])
+            .numbers(["|Mean| / limit", "Std / limit"])
+            .text("Criterion")
+            .rows(summary);
+        tables.push(table.class("sortable worded").size(7.5));
     }
     if !further.is_empty() {
-        let columns = vec![
-            Column::text("Quantity").wide(0.8),
-            Column::text("Filter").wide(1.7).once(),
-            Column::text("Processing").wide(1.1).once(),
-            Column::text("Comparison").only(Medium::Screen),
-            Column::text("Statistic").wide(1.2),
-            Column::name("Scope").wide(0.5),
-            Column::short("Unit"),
-            count(),
-            Column::number("Value"),
-            Column::number("Limit"),
-            Column::number("|Value| / limit"),
-            Column::text("Criterion"),
-        ];
         let caption = if tables.is_empty() {
             "Statistics and their limits"
         } else {
             "Further statistics and their limits"
         };
-        tables.push(Table::new(caption, columns, further).size(7.5));
+        let table = Table::new(caption)
+            .text("Quantity")
+            .wide(0.8)
+            .text("Filter")
+            .wide(1.7)
+            .once()
+            .text("Processing")
+            .wide(1.1)
+            .once()
+            .text("Comparison")
+            .only(Medium::Screen)
+            .text("Statistic")
+            .wide(1.2)
+            .name("Scope")
+            .wide(0.5)
+            .short("Unit")
+            .numbers([view.words.count, "Value", "Limit", "|Value| / limit"])
+            .text("Criterion")
+            .rows(further);
+        tables.push(table.size(7.5));
     }
     tables
 }

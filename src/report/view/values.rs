@@ -54,19 +54,6 @@ pub fn worst(quantity: &QuantityResult) -> Option<Table> {
         cells.push((pair.samples as u64).into());
         Row::from(cells).in_zone(pair.zone.as_deref().map(name).as_deref())
     };
-    let mut columns = vec![
-        Column::name("Section").wide(1.4).breaks(24),
-        Column::name("Record").breaks(24).sparse(),
-        Column::name("Zone").sparse(),
-        Column::name("Signal").wide(1.0).breaks(20),
-    ];
-    if quantity.has_sides {
-        columns.extend(Sides::of(quantity).heads().map(Column::number));
-    }
-    columns.push(Column::number(if quantity.has_sides { "Difference" } else { "Value" }));
-    columns.extend(own.then(|| Column::number("Limit")));
-    columns.extend((own || yardstick.is_some()).then(|| Column::number("|Value| / limit")));
-    columns.push(Column::number("Samples"));
     let what = if quantity.has_sides { "differences" } else { "values" };
     let against = match yardstick {
         _ if own => ", and divided by its own limit".into(),
@@ -78,8 +65,25 @@ pub fn worst(quantity: &QuantityResult) -> Option<Table> {
     let caption =
         self::caption(&format!("{which} {what} of "), quantity).and(in_unit(quantity)).and(against);
     let pairs = quantity.worst_first();
+    let table = Table::new(caption)
+        .name("Section")
+        .wide(1.4)
+        .breaks(24)
+        .name("Record")
+        .breaks(24)
+        .sparse()
+        .name("Zone")
+        .sparse()
+        .name("Signal")
+        .wide(1.0)
+        .breaks(20)
+        .when(quantity.has_sides, |table| table.numbers(Sides::of(quantity).heads()))
+        .number(if quantity.has_sides { "Difference" } else { "Value" })
+        .when(own, |table| table.number("Limit"))
+        .when(own || yardstick.is_some(), |table| table.number("|Value| / limit"))
+        .number("Samples");
     let rows = pairs.iter().take(WORST).map(row);
-    (!pairs.is_empty()).then(|| Table::new(caption, columns, rows).size(8.0))
+    (!pairs.is_empty()).then(|| table.rows(rows).size(8.0))
 }
 
 /// All values, as a block that a screen folds.
@@ -153,19 +157,11 @@ fn table(
         }
         Row::from(cells).in_zone(zone.as_deref())
     };
-    let mut columns = vec![
-        Column::name("Section").wide(1.2).breaks(UNBROKEN),
-        Column::name("Record").breaks(14).sparse(),
-        Column::name("Zone").breaks(3).sparse(),
-    ];
-    for signal in signals {
-        if quantity.has_sides {
-            let heads = [sides.short[0], sides.short[1], "diff."];
-            columns.extend(heads.map(|head| Column::number(head).wide(1.0).under(name(signal))));
-        } else {
-            columns.push(Column::number(name(signal)).wide(1.0).breaks(UNBROKEN));
-        }
-    }
+    let heads = [sides.short[0], sides.short[1], "diff."];
+    let of_signal = |table: Table, signal: &&str| match quantity.has_sides {
+        true => table.each(heads, |table, head| table.number(head).wide(1.0).under(name(signal))),
+        false => table.number(name(signal)).wide(1.0).breaks(UNBROKEN),
+    };
     let what = if quantity.has_sides {
         format!(": {}, difference", sides.heads().join(", ").to_lowercase())
     } else {
@@ -174,8 +170,21 @@ fn table(
     let caption = self::caption("All values of ", quantity).and(in_unit(quantity)).and(what);
     let rows = rows.iter().filter(|(_, pairs)| signals.iter().any(|one| pairs.contains_key(one)));
     let half = if quantity.has_sides { HALF_WITH_SIDES } else { HALF_WITHOUT_SIDES };
-    let table = Table::new(caption, columns, rows.map(row)).class("sortable values").size(7.5);
-    let table = table.kept(if quantity.has_sides { KEPT_WITH_SIDES } else { KEPT_WITHOUT_SIDES });
+    let table = Table::new(caption)
+        .name("Section")
+        .wide(1.2)
+        .breaks(UNBROKEN)
+        .name("Record")
+        .breaks(14)
+        .sparse()
+        .name("Zone")
+        .breaks(3)
+        .sparse()
+        .each(signals, of_signal)
+        .rows(rows.map(row))
+        .class("sortable values")
+        .size(7.5)
+        .kept(if quantity.has_sides { KEPT_WITH_SIDES } else { KEPT_WITHOUT_SIDES });
     if signals.len() <= half { table.abreast(ROWS) } else { table }
 }
 

@@ -33,13 +33,18 @@ pub fn table(view: &View<'_>, short: bool) -> Table {
         ])
         .toned(tone)
     };
-    let columns = vec![
-        Column::text("Verdict").wide(1.2),
-        Column::text("Result").wide(0.75),
-        Column::text("Rule").wide(1.6),
-        Column::text("Reasons and remarks").wide(2.4),
-    ];
-    Table::new("Verdicts", columns, found.verdicts.iter().map(row)).class("").size(8.0)
+    Table::new("Verdicts")
+        .text("Verdict")
+        .wide(1.2)
+        .text("Result")
+        .wide(0.75)
+        .text("Rule")
+        .wide(1.6)
+        .text("Reasons and remarks")
+        .wide(2.4)
+        .rows(found.verdicts.iter().map(row))
+        .class("")
+        .size(8.0)
 }
 
 /// Reasons and remarks, a line each: all, or the first and how many more there are.
