@@ -35,7 +35,6 @@ pub struct Compiled {
 
 impl Compiled {
     /// The same protocol with findings as notes only, so that a diagnosis includes every section.
-    #[must_use]
     pub fn only_telling(&self) -> Self {
         Self {
             family: self.family.clone(),
@@ -46,7 +45,6 @@ impl Compiled {
 
     /// The text of a section column as one of the words that the protocol declares for it, or a
     /// message; `None` if the protocol declares no words.
-    #[must_use]
     pub fn word(&self, column: &str, text: &str) -> Option<Result<String, String>> {
         let datum = self.plan.columns.iter().find(|datum| datum.key == column)?;
         match (&datum.kind, &datum.default) {

@@ -38,7 +38,6 @@ pub fn changes(before: &Document, after: &Document) -> Vec<Change> {
 }
 
 /// Number of blocks of the first document that the second has with the same meaning.
-#[must_use]
 pub fn kept(before: &Document, after: &Document) -> usize {
     let unchanged = |old: &&Block| {
         after.blocks.iter().find(|new| same(old, new)).is_some_and(|new| {
@@ -119,7 +118,6 @@ impl Change {
     }
 
     /// A document with this change alone.
-    #[must_use]
     pub fn applied(&self, document: &Document) -> Document {
         let mut document = document.clone();
         let blocks = &mut document.blocks;

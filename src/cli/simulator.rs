@@ -86,7 +86,6 @@ impl SimulatorChoice {
 
 impl Chosen<'_> {
     /// The reference vehicle model with other steps than its own; another simulator has its own.
-    #[must_use]
     pub fn integrated(self, steps: Steps) -> Self {
         match self {
             Self::Builtin(model) if steps != Steps::from(1) => {

@@ -162,7 +162,6 @@ impl Prepared {
     }
 
     /// Number of times that progress is told.
-    #[must_use]
     pub fn steps(&self) -> usize {
         let sections: usize = self.campaigns.iter().map(|one| one.campaign.names.len()).sum();
         sections * (1 + trials(&self.settings.sizes).len())

@@ -268,7 +268,6 @@ pub struct Really {
 
 /// Influence of effects that are known to be true, added to the simulation. Nothing if they cannot
 /// be added.
-#[must_use]
 pub fn effect_of_truth(
     campaign: &Campaign,
     compiled: &Compiled,

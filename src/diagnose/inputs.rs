@@ -44,7 +44,6 @@ impl std::fmt::Debug for Inputs<'_> {
 
 /// The value of a simulator parameter without any effect: from the vehicle file, else its neutral
 /// value.
-#[must_use]
 pub fn value_of(campaign: &Campaign, key: &str) -> Option<f64> {
     campaign
         .vehicle

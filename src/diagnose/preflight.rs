@@ -330,7 +330,6 @@ impl Try {
 
 impl Preflight {
     /// One line for each effect.
-    #[must_use]
     pub fn in_words(&self) -> Lines {
         use std::fmt::Write;
         let mut out = Lines::default();

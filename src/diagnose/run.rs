@@ -278,7 +278,6 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
 
 impl Found {
     /// The residual of the answer, not whitened.
-    #[must_use]
     pub fn left(&self) -> Vec<f64> {
         self.answer.chosen.all().fold(self.fitted.difference.clone(), |rest, member| {
             less(&rest, &member.change(&self.fitted.candidates, &self.masks))
@@ -287,7 +286,6 @@ impl Found {
 
     /// The covariance at the answer, plus the error of the responses of the simulated members,
     /// independent between features.
-    #[must_use]
     pub fn wider(&self) -> Covariance {
         let mut wider = self.fitted.covariance.clone();
         let candidates = &self.fitted.candidates;
@@ -303,7 +301,6 @@ impl Found {
     }
 
     /// The candidate of a fit, at the answer.
-    #[must_use]
     pub fn candidate(&self, fit: &Fitted) -> &Candidate {
         &self.fitted.candidates[fit.candidate]
     }
@@ -311,7 +308,6 @@ impl Found {
 
 /// Distance of a size from neutral in declared standard deviations, with the tolerance's further
 /// standard deviation. Infinite for an effect that is not a tolerance.
-#[must_use]
 pub fn deviations(
     candidate: &Candidate,
     size: f64,
@@ -337,14 +333,12 @@ pub fn deviations(
 }
 
 /// Length of the whitened change, in standard deviations.
-#[must_use]
 pub fn length(whitener: &Whitener, change: &[f64]) -> f64 {
     let z = whitener.apply(change);
     dot(&z, &z).sqrt()
 }
 
 /// Chi-squared per feature before and after the effects.
-#[must_use]
 pub fn chi(found: &Found) -> (f64, f64) {
     let of =
         |rest: &[f64]| chi_squared(&found.fitted.whitener.apply(rest)) / rest.len().max(1) as f64;

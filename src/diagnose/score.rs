@@ -57,7 +57,6 @@ impl Truth {
 
     /// The effects as the catalogue applies them; nothing if the catalogue does not contain one of
     /// them.
-    #[must_use]
     pub fn applied(&self, catalogue: &Catalogue) -> Option<Vec<Applied>> {
         self.effects.iter().map(|effect| effect.applied(catalogue)).collect()
     }
@@ -208,7 +207,6 @@ fn cells(diagnosis: &Diagnosis, truth: &Truth, really: Option<&Really>) -> Optio
 }
 
 /// Scores one diagnosis against its truth.
-#[must_use]
 pub fn case(
     campaign: &str,
     diagnosis: &Diagnosis,
@@ -274,7 +272,6 @@ pub fn case(
 }
 
 /// Scores of all cases.
-#[must_use]
 pub fn blind(cases: Vec<Case>) -> Blind {
     let good: Vec<&Case> = cases.iter().filter(|case| case.fault.is_none()).collect();
     let of = |kind: &str| good.iter().copied().filter(|case| case.kind == kind).collect::<Vec<_>>();

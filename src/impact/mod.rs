@@ -129,7 +129,6 @@ impl Prepared {
     }
 
     /// Number of times that progress is told.
-    #[must_use]
     pub fn steps(&self) -> usize {
         self.groups.iter().map(|(_, sources)| sources.len()).sum()
     }

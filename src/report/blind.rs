@@ -15,7 +15,6 @@ fn right(case: &Case) -> bool {
 }
 
 /// Scores, cases, confusion, detectability, calibration; without a cover.
-#[must_use]
 pub fn document(title: &str, blind: &Blind) -> Document {
     Document {
         title: title.to_owned(),

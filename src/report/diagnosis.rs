@@ -25,7 +25,6 @@ const FEW: usize = 4;
 
 /// The diagnosis as printed in both reports. `before` is the protocol evaluated on the campaign as
 /// it is.
-#[must_use]
 pub fn document(found: &Diagnosis, before: &Certification) -> Document {
     let mut chapters = vec![answer(found), places(found)];
     if !found.causes.is_empty() || !found.vetoed.is_empty() {
@@ -77,7 +76,6 @@ fn percent(value: f64) -> String {
 }
 
 /// All figures by their names in the document.
-#[must_use]
 pub fn figures(found: &Diagnosis) -> Vec<(String, String)> {
     let mut drawn = Vec::new();
     if !found.r#where.is_empty() {

@@ -337,7 +337,6 @@ pub struct Told<'a> {
 
 impl NamedEffect {
     /// Its parameters for a report.
-    #[must_use]
     pub fn told(&self) -> Vec<Told<'_>> {
         let mut told: Vec<Told<'_>> = Vec::new();
         for (name, value) in &self.parameters {
@@ -368,7 +367,6 @@ impl NamedEffect {
     }
 
     /// Its confinement, such as `, only in zones 3, 4`; empty if it acts in all sections.
-    #[must_use]
     pub fn only_in(&self) -> String {
         let parts = self
             .confined_to
@@ -382,7 +380,6 @@ impl NamedEffect {
 
 impl Told<'_> {
     /// Its channels, such as ` on Y_1R, Y_1L`; empty if there are none.
-    #[must_use]
     pub fn on(&self) -> String {
         if self.channels.is_empty() {
             String::new()
@@ -394,7 +391,6 @@ impl Told<'_> {
 
 impl Value {
     /// Its text if it is not a number.
-    #[must_use]
     pub fn text(&self) -> String {
         flat(&self.value)
     }

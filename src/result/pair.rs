@@ -34,7 +34,6 @@ pub struct PairValue {
 
 impl PairValue {
     /// The signal, and which value and record it is where there are several: `SigmaY_1, p99.85`.
-    #[must_use]
     pub fn label(&self) -> String {
         let record = self.record.as_ref().map(ToString::to_string);
         [Some(self.signal.clone()), self.taken.clone(), record]

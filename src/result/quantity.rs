@@ -111,7 +111,6 @@ impl QuantityResult {
     }
 
     /// With what its file states beside its statistics and values.
-    #[must_use]
     pub fn completed(mut self) -> Self {
         self.pairs = self.values.len();
         let mean = self.overall(&StatisticName::Mean);

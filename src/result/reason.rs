@@ -693,13 +693,11 @@ impl Reason {
     }
 
     /// The reason with what it is about.
-    #[must_use]
     pub fn about(self, subject: Subject, name: impl Into<String>) -> Self {
         Self::About { subject, name: name.into(), reason: Box::new(self) }
     }
 
     /// The reason without the verdicts that it comes through.
-    #[must_use]
     pub fn root(&self) -> &Self {
         match self {
             Self::About { subject: Subject::Verdict, reason, .. } => reason.root(),
@@ -752,7 +750,6 @@ impl Reason {
     }
 
     /// The same, with the quantity that it is about called as `name` says.
-    #[must_use]
     pub fn naming(&self, called: impl Fn(&str) -> String) -> Self {
         match self {
             Self::About { subject: Subject::Quantity, name, reason } => {

@@ -69,7 +69,6 @@ fn tree(items: &[ReportItem]) -> Value {
 }
 
 /// The value under a path, if stated.
-#[must_use]
 pub fn stated<'a>(items: &'a [ReportItem], path: &[&str]) -> Option<&'a str> {
     items.iter().find(|item| item.path == path)?.value.as_deref()
 }

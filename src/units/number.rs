@@ -74,7 +74,6 @@ pub fn split<'a>(text: &'a str, expected: &Unit) -> Result<(f64, &'a str), Refus
 }
 
 /// A number with so many significant digits; a zero has no sign.
-#[must_use]
 pub fn significant(value: f64, digits: usize) -> f64 {
     format!("{value:.*e}", digits - 1).parse().unwrap_or(value) + 0.0
 }
@@ -86,7 +85,6 @@ fn place(expected: &Unit) -> String {
 
 /// Units of the given dimension in which a number lies in a range (in SI): candidates for a unit
 /// that was omitted.
-#[must_use]
 pub fn units_within(number: f64, like: &Unit, range: (f64, f64)) -> Vec<&'static str> {
     let within = |factor: f64| (range.0..=range.1).contains(&(number * factor));
     let alike = SYMBOLS

@@ -96,7 +96,6 @@ impl Plan {
 
     /// The same plan, with all plausibility findings as notes: they are reported and exclude no
     /// section.
-    #[must_use]
     pub fn only_telling(&self) -> Self {
         let mut plan = self.clone();
         plan.plausibility.iter_mut().for_each(|rule| rule.otherwise = OnFault::Note);

@@ -18,7 +18,6 @@ pub struct Apart {
 }
 
 /// The distance between a member of the answer and its rival.
-#[must_use]
 pub fn apart(found: &Found, member: &Fitted, rival: &Fitted) -> Option<Apart> {
     let change = member.change(&found.fitted.candidates, &found.masks);
     let of = (&found.fitted.candidates[rival.candidate], &found.masks[rival.mask]);

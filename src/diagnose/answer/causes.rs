@@ -15,7 +15,6 @@ use crate::result::diagnosis::{Cause, NamedEffect, Value};
 use crate::yaml::Words;
 
 /// A set of effects as a cause.
-#[must_use]
 pub fn cause(inputs: &Inputs<'_>, found: &Found, members: &[Fitted], rank: usize) -> Cause {
     let effects: Vec<NamedEffect> =
         members.iter().map(|member| named(inputs, found, member)).collect();
@@ -63,7 +62,6 @@ pub fn short(value: f64) -> String {
 /// The 90 % interval of a size: uncertainty of the fit, of the interpolation between simulated
 /// sizes, of the choice of sections, and of the response of the simulator as a whole. Nothing for
 /// an effect without a size.
-#[must_use]
 pub fn interval(found: &Found, member: &Fitted) -> Option<(f64, f64)> {
     let of = &found.fitted.candidates[member.candidate];
     let (low, high) =

@@ -21,7 +21,6 @@ use crate::result::{Certification, QuantityResult, StatisticName};
 use crate::simulate::{Simulator, simulate};
 
 /// The chosen effects with the sizes of the members.
-#[must_use]
 pub fn applied(found: &Found, members: &[Fitted]) -> Vec<Applied> {
     members
         .iter()
@@ -39,7 +38,6 @@ pub fn applied(found: &Found, members: &[Fitted]) -> Vec<Applied> {
 }
 
 /// Distributes the sections to folds, stratum by stratum in turn.
-#[must_use]
 pub fn folds(strata: &[Vec<usize>]) -> Vec<Vec<usize>> {
     let mut folds = vec![Vec::new(); FOLDS];
     let mut next = 0;
@@ -54,7 +52,6 @@ pub fn folds(strata: &[Vec<usize>]) -> Vec<Vec<usize>> {
 }
 
 /// The members with sizes fitted to the sections outside a fold.
-#[must_use]
 pub fn trained(found: &Found, fold: &[usize]) -> Vec<Fitted> {
     let kept: Vec<usize> = (0..found.seen.sections.len()).filter(|at| !fold.contains(at)).collect();
     let features: Vec<usize> = (0..found.seen.features.len()).collect();
@@ -121,7 +118,6 @@ pub fn improved(
 }
 
 /// The gap of some sections before and after, over all quantities.
-#[must_use]
 pub fn within(
     before: &Certification,
     after: &Certification,
@@ -133,7 +129,6 @@ pub fn within(
 }
 
 /// The values of some sections only.
-#[must_use]
 pub fn of_sections(of: &Certification, sections: &[&str]) -> Certification {
     let mut part = of.clone();
     part.sections.retain(|section| sections.contains(&section.section.as_str()));
@@ -145,7 +140,6 @@ pub fn of_sections(of: &Certification, sections: &[&str]) -> Certification {
 
 /// Quantities before and after, with the interval of the removed share. `noise` is the protocol
 /// evaluated on records that differ only by the declared noise.
-#[must_use]
 pub fn compare(
     before: &Certification,
     after: &Certification,
@@ -331,7 +325,6 @@ fn measure(of: &Certification, quantities: &[usize], names: &[String], drawn: &[
 
 /// The part of the whitened difference that each member removes alone, as a share of what all
 /// remove together.
-#[must_use]
 pub fn shares(found: &Found) -> Vec<(String, f64)> {
     let all: f64 = found
         .answer

@@ -18,7 +18,6 @@ pub enum Verdict {
 
 impl Verdict {
     /// As in `diagnosis.json`.
-    #[must_use]
     pub fn word(self) -> &'static str {
         match self {
             Self::NoSignificantGap => "no significant gap",
@@ -103,14 +102,12 @@ static RULES: [Rule; 11] = [
 ];
 
 /// The verdict, and its reason where the answer does not state it elsewhere.
-#[must_use]
 pub fn verdict(facts: &Facts) -> (Verdict, Option<Statement>) {
     let first = RULES.iter().find(|rule| (rule.applies)(facts));
     first.map_or((Verdict::Unexplained, None), |rule| (rule.verdict, rule.reason.clone()))
 }
 
 /// Whether criteria of the protocol are not met.
-#[must_use]
 pub fn fails(protocol: OfProtocol) -> bool {
     protocol == OfProtocol::NotValidated
 }
@@ -118,7 +115,6 @@ pub fn fails(protocol: OfProtocol) -> bool {
 /// The share of the gap that the effects remove on sections excluded from the fit: of all
 /// quantities or of those that the effects change, whichever is larger. Nothing where they change
 /// none.
-#[must_use]
 pub fn removed(shrink: Option<&Shrink>) -> Option<f64> {
     let shrink = shrink?;
     let touched = shrink.touched.as_ref()?;
@@ -127,7 +123,6 @@ pub fn removed(shrink: Option<&Shrink>) -> Option<f64> {
 
 /// How well the answer fits: chi-squared of all that is left, with the model error of the simulated
 /// effects allowed.
-#[must_use]
 pub fn fit(found: &Found) -> Fit {
     use statrs::distribution::{ChiSquared, ContinuousCDF};
     let z = found.wider().whitener().apply(&found.left());
@@ -146,7 +141,6 @@ pub fn fit(found: &Found) -> Fit {
 }
 
 /// A remark where what is allowed does not fit what is left.
-#[must_use]
 pub fn remark(fit: &Fit) -> Option<Remark> {
     let Fit { chi2_per_feature, allowance_scale: factor, allowance_scale_sd, .. } = *fit;
     let within = NINETY * allowance_scale_sd;

@@ -44,7 +44,6 @@ fn on_held_out(held: &HeldOut) -> Option<Statement> {
 }
 
 /// Converts the results into the diagnosis of the report.
-#[must_use]
 pub fn diagnosis(
     inputs: &Inputs<'_>,
     found: &Found,

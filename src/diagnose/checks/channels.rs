@@ -15,7 +15,6 @@ pub struct View {
 impl Covariance {
     /// The covariance of some features of some sections. A section listed twice counts as two
     /// independent sections.
-    #[must_use]
     pub fn part(&self, sections: &[usize], features: &[usize]) -> Self {
         let pick = |column: &[f64], section: usize| {
             features
@@ -48,7 +47,6 @@ impl Covariance {
 }
 
 /// The part of a column in a view.
-#[must_use]
 pub fn part(column: &[f64], size: usize, view: &View) -> Vec<f64> {
     view.sections
         .iter()
@@ -74,7 +72,6 @@ pub struct Lack {
 }
 
 /// Lack of fit by channel, separately for levels and all other features.
-#[must_use]
 pub fn lack_of_fit(covariance: &Covariance, seen: &Observations, rest: &[f64]) -> Vec<Lack> {
     use rayon::prelude::*;
     let all: Vec<usize> = seen.first_runs();
@@ -153,7 +150,6 @@ pub fn excess(lack: &[Lack]) -> f64 {
 /// The share of the excess that remains, and whether the gap is unexplained: more than half
 /// remains, in more than one kind of feature or channel or far beyond the threshold. One of some
 /// forty may exceed the threshold by a little.
-#[must_use]
 pub fn unexplained(before: &[Lack], after: &[Lack]) -> (f64, bool) {
     let (gap, rest) = (excess(before), excess(after));
     let share = if gap > 0.0 { (rest / gap).clamp(0.0, 1.0) } else { 0.0 };

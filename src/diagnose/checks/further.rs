@@ -30,7 +30,6 @@ pub struct Free {
 
 /// Estimates of the tolerances, by parameter: the mean of the posterior under the allowed
 /// difference and the error of the responses.
-#[must_use]
 pub fn used(at: &Linearisation, chosen: &Chosen, far: Far<'_>) -> Vec<UsedTolerance> {
     let rest = chosen.weighed();
     let one = |column: &Sensitivity| {
@@ -57,7 +56,6 @@ pub fn used(at: &Linearisation, chosen: &Chosen, far: Far<'_>) -> Vec<UsedTolera
 /// Tolerances with more evidence than the answer allows, as a further cause or in place of a
 /// member: the one with the most evidence first. What is in place of a single member is weighed
 /// without effects.
-#[must_use]
 pub fn free(
     (alone, fitted): (&Linearisation, &Linearisation),
     masks: &[Mask],
@@ -168,7 +166,6 @@ pub struct Further {
 impl Further {
     /// From the candidates of the catalogue and the tolerances. A candidate within its declared
     /// tolerance is no gap: its tolerance is tried with a free size.
-    #[must_use]
     pub fn new(at: &Linearisation, nearest: &[Fitted], free: &[Free], far: Far<'_>) -> Self {
         let beyond = |fit: &&Fitted| far(&at.candidates[fit.candidate], fit.size) >= TOLERANCE_SD;
         let evidence = nearest.iter().filter(beyond).map(|fit| fit.evidence).fold(0.0, f64::max);
@@ -181,13 +178,11 @@ impl Further {
     }
 
     /// The tolerance that refutes an answer, or that is as possible.
-    #[must_use]
     pub fn suspect(&self) -> Option<&Free> {
         self.instead.as_ref().filter(|free| free.evidence > POSSIBLE)
     }
 
     /// Whether that tolerance refutes the answer.
-    #[must_use]
     pub fn refutes(&self) -> bool {
         self.instead.as_ref().is_some_and(|free| free.evidence > REFUTES)
     }

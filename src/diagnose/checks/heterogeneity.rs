@@ -39,7 +39,6 @@ pub struct Heterogeneity {
 }
 
 /// The views of a campaign.
-#[must_use]
 pub fn views(seen: &Observations, settings: &Settings) -> Vec<View> {
     let count = seen.sections.len();
     let view = |name: &str, label: &dyn Fn(usize, usize) -> Option<String>| View {
@@ -132,7 +131,6 @@ pub fn views(seen: &Observations, settings: &Settings) -> Vec<View> {
 }
 
 /// Tests every member over every view.
-#[must_use]
 pub fn heterogeneity(fitter: &Fitter<'_>, chosen: &Chosen, views: &[View]) -> Vec<Heterogeneity> {
     use rayon::prelude::*;
     // An exact operation has an error too: the records that it acts on are not those of the
@@ -207,7 +205,6 @@ fn test(
 }
 
 /// The test with the smallest p-value, if it is significant among all tests (Bonferroni).
-#[must_use]
 pub fn certain(all: &[Heterogeneity]) -> Option<&Heterogeneity> {
     let least = all.iter().min_by(|a, b| a.p_value.total_cmp(&b.p_value))?;
     (least.p_value * (all.len() as f64) < CHANCE).then_some(least)

@@ -24,20 +24,17 @@ pub struct Stability {
 
 impl Stability {
     /// Whether another effect has more evidence in most of the resamples.
-    #[must_use]
     pub fn fails(&self) -> bool {
         self.first < FIRST
     }
 
     /// Share of the resamples in which a candidate is first in place of the member.
-    #[must_use]
     pub fn instead_of(&self, candidate: usize) -> f64 {
         self.instead.iter().find(|(other, _)| *other == candidate).map_or(0.0, |(_, share)| *share)
     }
 
     /// Whether a candidate is reported together with a member that fails: at least half as often
     /// first as the most frequent one.
-    #[must_use]
     pub fn as_well(&self, candidate: usize) -> bool {
         let share = self.instead_of(candidate);
         let most = self.instead.iter().fold(self.first, |most, (_, share)| most.max(*share));
@@ -47,7 +44,6 @@ impl Stability {
 
 /// Resamples one member with the others fixed: its size, and its evidence against that of its
 /// rivals.
-#[must_use]
 pub fn stability(
     fitter: &Fitter<'_>,
     z: &[f64],

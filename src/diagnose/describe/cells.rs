@@ -19,7 +19,6 @@ pub struct Cell {
 
 impl Cell {
     /// Its channels, in order of first occurrence.
-    #[must_use]
     pub fn signals(&self, found: &Found) -> Vec<String> {
         let mut signals: Vec<String> = Vec::new();
         for (_, feature) in &self.members {
@@ -32,7 +31,6 @@ impl Cell {
     }
 
     /// The unit of its differences: that of the first channel for levels, `-` for ratios.
-    #[must_use]
     pub fn unit(&self, found: &Found, units: &Units) -> String {
         let signals = self.signals(found);
         let unit = units
@@ -42,7 +40,6 @@ impl Cell {
     }
 
     /// The kind of feature, in words.
-    #[must_use]
     pub fn band(&self, found: &Found) -> String {
         let edges = &found.seen.layout.edges;
         match self.kind {
@@ -56,7 +53,6 @@ impl Cell {
 }
 
 /// Positions of the catalogue; if it has none, one position with all channels.
-#[must_use]
 pub fn positions(settings: &Settings) -> Vec<Position> {
     let every = || Position { name: "all".into(), straight: Vec::new(), mirrored: Vec::new() };
     if settings.positions.is_empty() { vec![every()] } else { settings.positions.clone() }
@@ -70,7 +66,6 @@ pub fn kinds(found: &Found) -> impl Iterator<Item = Kind> {
 
 /// The non-empty cells of one kind and position, for each group of channels and each set of
 /// sections.
-#[must_use]
 pub fn cells(
     settings: &Settings,
     found: &Found,
@@ -110,7 +105,6 @@ pub fn cells(
 
 /// The largest p-value that is significant (Benjamini and Yekutieli 2001: valid under any
 /// dependence); below zero if none is.
-#[must_use]
 pub fn significant_up_to(probabilities: &[f64]) -> f64 {
     let mut order = probabilities.to_vec();
     order.sort_by(f64::total_cmp);

@@ -20,7 +20,6 @@ pub struct Fold {
 impl Fold {
     /// The positions of the catalogue pair the channels. A level changes sign with the curve if its
     /// simulated values do.
-    #[must_use]
     pub fn new(settings: &Settings, seen: &Observations, simulated: &[f64]) -> Self {
         let number =
             |name: &String| seen.layout.channels.iter().position(|channel| channel.name == *name);
@@ -70,7 +69,6 @@ impl Fold {
     }
 
     /// -1 for a level that changes sign with the curve, in a mirrored section; 1 otherwise.
-    #[must_use]
     pub fn sign(&self, section: usize, channel: usize, kind: Kind) -> f64 {
         if kind == Kind::Level && self.turns[channel] && self.mirrored[section] {
             -1.0

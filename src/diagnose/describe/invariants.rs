@@ -17,7 +17,6 @@ const PARITIES: [(&str, bool); 2] =
 
 impl Covariance {
     /// Variance of the sum of all features, each times its weight.
-    #[must_use]
     pub fn variance(&self, weights: &[f64]) -> f64 {
         let sum = |column: &[f64], weights: &[f64]| {
             column.iter().zip(weights).map(|(x, weight)| x * weight).sum::<f64>().powi(2)
@@ -39,7 +38,6 @@ impl Covariance {
 
 /// All invariants of the catalogue whose channels were recorded, simulated - measured, before and
 /// after the causes are added.
-#[must_use]
 pub fn invariants(settings: &Settings, found: &Found, units: &Units) -> Vec<Invariant> {
     let seen = &found.seen;
     let rest = found.left();
@@ -98,7 +96,6 @@ fn off(one: &Invariant) -> f64 {
 
 /// A sentence on the invariant with the largest deviation after the causes; nothing if none is
 /// large enough.
-#[must_use]
 pub fn worst(all: &[Invariant]) -> Option<Statement> {
     let one = all.iter().max_by(|a, b| off(a).total_cmp(&off(b))).filter(|one| off(one) > WORTH)?;
     Some(Statement::LargestSum {

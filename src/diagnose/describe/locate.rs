@@ -10,7 +10,6 @@ use crate::result::diagnosis::Where;
 use crate::simulate::Units;
 
 /// All cells in decreasing order of their share of the gap.
-#[must_use]
 pub fn locate(settings: &Settings, found: &Found, units: &Units) -> Vec<Where> {
     use rayon::prelude::*;
     let cells = map(settings, found);
@@ -52,7 +51,6 @@ pub fn locate(settings: &Settings, found: &Found, units: &Units) -> Vec<Where> {
 
 /// Names of the cells that a change of the features moves by more than three standard deviations:
 /// the significant cells expected for a known effect.
-#[must_use]
 pub fn moved(settings: &Settings, found: &Found, change: &[f64]) -> Vec<String> {
     let far = |cell: &Cell| {
         let values: Vec<f64> = cell

@@ -21,7 +21,6 @@ use crate::words;
 
 /// All groups of channels whose dynamic content is compared; none where the catalogue does not
 /// specify it.
-#[must_use]
 pub fn shapes(
     settings: &Settings,
     seen: &Observations,

@@ -19,7 +19,6 @@ use crate::result::diagnosis::{Slope, Trend};
 use crate::simulate::Units;
 
 /// All trends in increasing order of p-value, and the correlated covariates, in words.
-#[must_use]
 pub fn trends(settings: &Settings, found: &Found, units: &Units) -> (Vec<Trend>, Vec<String>) {
     use rayon::prelude::*;
     let sections = [found.seen.first_runs()];
@@ -93,14 +92,12 @@ pub fn trends(settings: &Settings, found: &Found, units: &Units) -> (Vec<Trend>,
 }
 
 /// Whether a trend of the residual is certain.
-#[must_use]
 pub fn certain(trends: &[Trend]) -> bool {
     let tested = trends.len() as f64;
     trends.iter().any(|trend| trend.after.p_value * tested < CERTAIN)
 }
 
 /// The trend with the smallest p-value with the causes added, if it is significant.
-#[must_use]
 pub fn worth_a_word(trends: &[Trend]) -> Option<Statement> {
     let trend = trends
         .iter()
@@ -121,7 +118,6 @@ pub fn worth_a_word(trends: &[Trend]) -> Option<Statement> {
 }
 
 /// A change in the unit of its trend.
-#[must_use]
 pub fn change(trend: &Trend, change: f64) -> String {
     if trend.unit == "-" {
         format!("{:.0} %", 100.0 * change)

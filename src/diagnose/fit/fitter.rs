@@ -58,14 +58,12 @@ struct Best {
 
 impl<'a> Fitter<'a> {
     /// Whitens the nodes of all candidates under all their masks.
-    #[must_use]
     pub fn new(whitener: &'a Whitener, candidates: &'a [Candidate], masks: Vec<Mask>) -> Self {
         Self::knowing(whitener, candidates, masks, Known::new())
     }
 
     /// As [`Self::new`], reusing the results of an earlier fitter. Candidates may have more nodes
     /// since, and there may be more masks.
-    #[must_use]
     pub fn knowing(
         whitener: &'a Whitener,
         candidates: &'a [Candidate],
@@ -80,7 +78,6 @@ impl<'a> Fitter<'a> {
     }
 
     /// For fits of some members alone, each under its own mask.
-    #[must_use]
     pub fn of(
         whitener: &'a Whitener,
         candidates: &'a [Candidate],
@@ -139,7 +136,6 @@ impl<'a> Fitter<'a> {
 
     /// The price of a member: of its size, along a path of that length, of the choice among the
     /// candidates of the effect, and of the mask.
-    #[must_use]
     pub fn price(&self, member: Member) -> f64 {
         let long = self.whitened.get(&member).map_or(0.0, |path| path.long);
         let alternatives = self.candidates[member.0].alternatives as f64;
@@ -150,7 +146,6 @@ impl<'a> Fitter<'a> {
 
     /// Columns of the whitened model error of a member at a fit on its path, from the nearer of the
     /// two nodes.
-    #[must_use]
     pub fn model_error(&self, member: Member, place: (usize, f64)) -> DMatrix<f64> {
         match self.candidates[member.0].exact {
             true => DMatrix::zeros(self.whitener.features(), 0),
@@ -159,7 +154,6 @@ impl<'a> Fitter<'a> {
     }
 
     /// The same, whether the change of the member is exact or not.
-    #[must_use]
     pub fn error_of_any(&self, member: Member, (segment, share): (usize, f64)) -> DMatrix<f64> {
         let rows = self.whitener.features();
         let Some(path) = self.whitened.get(&member) else {
@@ -180,13 +174,11 @@ impl<'a> Fitter<'a> {
     }
 
     /// A member at a fit on its path.
-    #[must_use]
     pub fn at(&self, (candidate, mask): Member, (segment, share): (usize, f64)) -> Fitted {
         self.fitted(candidate, mask, Best { segment, share, fall: 0.0, evidence: 0.0 })
     }
 
     /// A candidate under a mask and the whitened difference `z`, by section.
-    #[must_use]
     pub fn by_section(&self, z: &[f64], candidate: usize, mask: usize) -> Option<BySection> {
         let path = self.whitened.get(&(candidate, mask))?;
         let sections = self.masks[0].sections.len().max(1);
@@ -217,7 +209,6 @@ impl<'a> Fitter<'a> {
     }
 
     /// The largest evidence of any candidate for `z`, in all sections.
-    #[must_use]
     pub fn most(&self, z: &[f64]) -> f64 {
         (0..self.candidates.len())
             .filter_map(|at| self.meet(z, at, 0))
@@ -226,7 +217,6 @@ impl<'a> Fitter<'a> {
     }
 
     /// The best size of a candidate under a mask for the whitened difference `z`.
-    #[must_use]
     pub fn fit(&self, z: &[f64], candidate: usize, mask: usize) -> Option<Fitted> {
         let best = self.meet(z, candidate, mask)?;
         Some(self.fitted(candidate, mask, best))
@@ -245,7 +235,6 @@ impl<'a> Fitter<'a> {
     }
 
     /// The best fit of every candidate, each under its best mask.
-    #[must_use]
     pub fn all(&self, z: &[f64]) -> Vec<Fitted> {
         use rayon::prelude::*;
         (0..self.candidates.len())
@@ -255,7 +244,6 @@ impl<'a> Fitter<'a> {
     }
 
     /// The best fit of a candidate under any of its masks.
-    #[must_use]
     pub fn best(&self, z: &[f64], candidate: usize) -> Option<Fitted> {
         let met =
             (0..self.masks.len()).filter_map(|mask| Some((mask, self.meet(z, candidate, mask)?)));
@@ -267,7 +255,6 @@ impl<'a> Fitter<'a> {
 impl Fitted {
     /// Standard error of the size, by the fit and by the interpolation between simulated sizes; 0
     /// where it has none.
-    #[must_use]
     pub fn error(&self) -> f64 {
         if self.slope > 0.0 {
             (1.0 / self.slope).hypot(INTERPOLATION * self.size.abs().min(1e12))
@@ -278,7 +265,6 @@ impl Fitted {
 
     /// Standard error of the size by the error of the response that all features share: it is
     /// another size, and not seen in the residual.
-    #[must_use]
     pub fn common_error(&self, candidates: &[Candidate], common: f64) -> f64 {
         let of = &candidates[self.candidate];
         let change = of
@@ -290,7 +276,6 @@ impl Fitted {
     }
 
     /// Derivative of the features with respect to the size, at the fitted size.
-    #[must_use]
     pub fn tangent(&self, candidates: &[Candidate], masks: &[Mask]) -> Vec<f64> {
         let [from, to] =
             [self.segment, self.segment + 1].map(|node| &candidates[self.candidate].nodes[node]);
@@ -307,7 +292,6 @@ impl Fitted {
     }
 
     /// Change of the features, not whitened.
-    #[must_use]
     pub fn change(&self, candidates: &[Candidate], masks: &[Mask]) -> Vec<f64> {
         let of = &candidates[self.candidate];
         let (a, b) = (&of.nodes[self.segment].change, &of.nodes[self.segment + 1].change);

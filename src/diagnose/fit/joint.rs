@@ -89,7 +89,6 @@ fn alternate(z: &[f64], paths: &[Seen]) -> Option<Vec<(usize, f64)>> {
 }
 
 /// Fits a set of effects to the whitened difference `z`; nothing if a member has no path.
-#[must_use]
 pub fn fit(fitter: &Fitter<'_>, z: &[f64], set: &[Member]) -> Option<Joint> {
     let paths: Vec<&Path> =
         set.iter().map(|member| fitter.whitened.get(member)).collect::<Option<_>>()?;
@@ -133,7 +132,6 @@ pub fn fit(fitter: &Fitter<'_>, z: &[f64], set: &[Member]) -> Option<Joint> {
 }
 
 /// The metric of the error of the responses of several members.
-#[must_use]
 pub fn metric(features: usize, columns: &[DMatrix<f64>]) -> Metric {
     let mut all = DMatrix::zeros(features, columns.iter().map(DMatrix::ncols).sum());
     let mut at = 0;

@@ -18,7 +18,6 @@ pub struct Bars {
 
 impl Bars {
     /// Least evidence of a candidate.
-    #[must_use]
     pub fn least(&self, candidate: &Candidate) -> f64 {
         if candidate.exact { self.exact } else { self.first }
     }
@@ -48,7 +47,6 @@ pub struct Refused {
 
 impl Chosen {
     /// The empty set.
-    #[must_use]
     pub fn none(z: &[f64]) -> Self {
         Self {
             members: Vec::new(),
@@ -65,19 +63,16 @@ impl Chosen {
     }
 
     /// The same, by candidate and mask.
-    #[must_use]
     pub fn set(&self) -> Vec<Member> {
         self.all().map(|member| (member.candidate, member.mask)).collect()
     }
 
     /// The residual weighted with the error of the responses, for the fit of a further effect.
-    #[must_use]
     pub fn weighed(&self) -> Vec<f64> {
         self.metric.apply(&self.metric.apply(&self.rest))
     }
 
     /// The whitened difference less the changes of all but one member.
-    #[must_use]
     pub fn left_by_others(&self, z: &[f64], at: usize) -> Vec<f64> {
         let others = self.all().enumerate().filter(|(other, _)| *other != at);
         others.fold(z.to_vec(), |rest, (_, other)| less(&rest, &other.whitened))
@@ -85,13 +80,11 @@ impl Chosen {
 }
 
 /// Whether a size is within the plausible range of the catalogue.
-#[must_use]
 pub fn plausible(candidate: &Candidate, size: f64) -> bool {
     (candidate.range.0..=candidate.range.1).contains(&size)
 }
 
 /// Chi-squared of a whitened difference.
-#[must_use]
 pub fn chi_squared(z: &[f64]) -> f64 {
     dot(z, z)
 }

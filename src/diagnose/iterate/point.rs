@@ -36,7 +36,6 @@ pub struct Linearisation {
 }
 
 impl Linearisation {
-    #[must_use]
     pub fn new(
         candidates: Vec<Candidate>,
         columns: Vec<Option<Sensitivity>>,
@@ -62,7 +61,6 @@ pub struct Linearise<'a> {
 
 impl Linearise<'_> {
     /// Without effects.
-    #[must_use]
     pub fn without_effects(&self, candidates: Vec<Candidate>) -> Linearisation {
         let ground = self.workshop.ground;
         let columns = ground.columns.clone();
@@ -75,7 +73,6 @@ impl Linearise<'_> {
     /// At the members of a fit, with `further` candidates simulated beside them as well. `near` is
     /// at the same members with other sizes: it has the tolerances already. Nothing where no member
     /// changes the response to others, or where a simulation fails.
-    #[must_use]
     pub fn at(
         &self,
         (nominal, near): (&Linearisation, Option<&Linearisation>),

@@ -38,7 +38,6 @@ pub struct Candidate {
 
 impl Candidate {
     /// A candidate for an effect and one of its parameters, in all sections and without channels.
-    #[must_use]
     pub fn new(effect: &Effect, parameter: &Parameter, mut nodes: Vec<Node>) -> Self {
         nodes.sort_by(|a, b| a.size.total_cmp(&b.size));
         Self {
@@ -82,7 +81,6 @@ impl Candidate {
 
     /// Range of the change of a feature between half and one and a half times the distance of a
     /// size from neutral.
-    #[must_use]
     pub fn range_near(&self, size: f64, place: usize) -> f64 {
         let reach = 0.5 * (size - self.neutral().unwrap_or(0.0)).abs();
         let near = self.nodes.iter().filter(|node| (node.size - size).abs() <= reach);
@@ -95,31 +93,26 @@ impl Candidate {
     }
 
     /// The size without influence.
-    #[must_use]
     pub fn neutral(&self) -> Option<f64> {
         self.nodes.iter().find(|node| node.change.is_empty()).map(|node| node.size)
     }
 
     /// Whether it is the same cause, possibly by another parameter.
-    #[must_use]
     pub fn is_like(&self, other: &Self) -> bool {
         self.effect == other.effect && self.channels == other.channels
     }
 
     /// Whether two sizes are on the same side of neutral.
-    #[must_use]
     pub fn same_side(&self, size: f64, other: f64) -> bool {
         self.neutral().is_none_or(|neutral| (size < neutral) == (other < neutral))
     }
 
     /// Whether sizes on the side of `size` remain to be simulated.
-    #[must_use]
     pub fn pending_towards(&self, size: f64) -> bool {
         self.pending.iter().any(|pending| self.same_side(*pending, size))
     }
 
     /// Whether it exchanges two channels.
-    #[must_use]
     pub fn effect_is_swap(&self) -> bool {
         self.discrete
             && self.channels.len() == 2
@@ -146,7 +139,6 @@ pub struct Beside {
 
 impl Beside {
     /// A bench with these members set.
-    #[must_use]
     pub fn on<'a>(&self, bench: &Bench<'a>) -> Bench<'a> {
         Bench {
             set: bench.set.iter().chain(&self.set).cloned().collect(),
@@ -157,7 +149,6 @@ impl Beside {
 }
 
 /// Interpolates between two changes of this many features, each empty where it is zero.
-#[must_use]
 pub fn blend(a: &[f64], b: &[f64], share: f64, len: usize) -> Vec<f64> {
     match (a.is_empty(), b.is_empty()) {
         (true, true) => vec![0.0; len],
@@ -169,7 +160,6 @@ pub fn blend(a: &[f64], b: &[f64], share: f64, len: usize) -> Vec<f64> {
 
 impl Candidate {
     /// The size at a share of a segment of the path.
-    #[must_use]
     pub fn size_at(&self, segment: usize, share: f64) -> f64 {
         between(self.nodes[segment].size, self.nodes[segment + 1].size, share)
     }

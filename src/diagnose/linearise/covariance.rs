@@ -36,7 +36,6 @@ pub fn expect(sensitivities: &[Sensitivity], difference: &mut [f64]) {
 
 /// The covariance of `measured - simulated` without any effect. `simulated` are the features of the
 /// campaign's simulation. Without `standing`, noise and tolerances alone are included.
-#[must_use]
 pub fn covariance(
     seen: &Observations,
     settings: &Settings,
@@ -86,7 +85,6 @@ pub fn covariance(
 type Inside = (usize, Vec<f64>);
 
 /// Columns of all discrepancies: those common to all sections, and those of single sections.
-#[must_use]
 pub fn discrepancies(seen: &Observations, settings: &Settings) -> (Vec<Keyed>, Vec<Inside>) {
     let (mut shared, mut inside) = (Vec::new(), Vec::new());
     for (number, discrepancy) in settings.discrepancies.iter().enumerate() {

@@ -26,7 +26,6 @@ impl Declared {
     ///
     /// Problems: `wrong-kind` for a value that is not a number from 0 on, `unknown-unit`,
     /// `unit-mismatch`; a warning for a name that is not in the catalogue.
-    #[must_use]
     pub fn read(campaign: &Campaign, settings: &Settings, problems: &mut Problems) -> Self {
         let known = settings.tolerated();
         let mut declared = Self::default();
@@ -58,7 +57,6 @@ impl Declared {
 
     /// One standard deviation, in the unit of the catalogue; nothing where the campaign declares
     /// none.
-    #[must_use]
     pub fn get(&self, name: &str) -> Option<f64> {
         self.values.get(name).copied()
     }

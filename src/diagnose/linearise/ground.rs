@@ -71,7 +71,6 @@ impl Ground {
 }
 
 /// The simulator on the sections; nothing without a simulator.
-#[must_use]
 pub fn bench<'a>(inputs: &Inputs<'a>, seen: &'a Observations) -> Option<Bench<'a>> {
     inputs.simulator.map(|simulator| Bench {
         seen,

@@ -14,20 +14,17 @@ pub struct Mask {
 }
 
 /// Whether an effect may be confined so.
-#[must_use]
 pub fn allowed(candidates: &[Candidate], candidate: usize, mask: usize) -> bool {
     mask == 0 || candidates[candidate].confinable
 }
 
 impl Mask {
     /// All of so many sections.
-    #[must_use]
     pub fn everywhere(sections: usize) -> Self {
         Self { confined: None, sections: vec![true; sections] }
     }
 
     /// A change in the sections of the mask, zero elsewhere.
-    #[must_use]
     pub fn on(&self, change: &[f64]) -> Vec<f64> {
         let mut masked = change.to_vec();
         let size = masked.len() / self.sections.len().max(1);
@@ -42,7 +39,6 @@ impl Mask {
 
 /// All sections, the values of the columns by which an effect may be confined, and pairs of
 /// successive values.
-#[must_use]
 pub fn masks(seen: &Observations, settings: &Settings) -> Vec<Mask> {
     let all = seen.sections.len();
     let mut masks = vec![Mask::everywhere(all)];

@@ -36,7 +36,6 @@ fn singular(columns: &DMatrix<f64>) -> Option<(DMatrix<f64>, Vec<f64>)> {
 }
 
 /// The columns `U` in fewer columns with the same `U U'`.
-#[must_use]
 pub fn reduced(columns: &DMatrix<f64>) -> DMatrix<f64> {
     match singular(columns) {
         Some((mut basis, values)) => {
@@ -49,7 +48,6 @@ pub fn reduced(columns: &DMatrix<f64>) -> DMatrix<f64> {
 
 impl Metric {
     /// For the columns `U`.
-    #[must_use]
     pub fn new(columns: &DMatrix<f64>) -> Self {
         let Some((basis, values)) = singular(columns) else { return Self::default() };
         let shrink = DVector::from_iterator(
@@ -61,7 +59,6 @@ impl Metric {
     }
 
     /// `(I + U U')^-1/2 v`.
-    #[must_use]
     pub fn apply(&self, v: &[f64]) -> Vec<f64> {
         let Some(basis) = self.basis.as_ref().filter(|_| !v.is_empty()) else { return v.to_vec() };
         let mut z = DVector::from_column_slice(v);

@@ -37,7 +37,6 @@ pub struct Closest {
 
 /// From squared lengths of the nodes, inner products of each with the next, and inner products of
 /// each with the difference.
-#[must_use]
 pub fn closest(
     lengths: &[f64],
     products: &[f64],
@@ -79,7 +78,6 @@ pub struct BySection {
 impl BySection {
     /// Fall of chi-squared and size with a weight per section; nothing where no section with a
     /// weight is changed.
-    #[must_use]
     pub fn fit(&self, times: &[f64]) -> Option<(f64, f64)> {
         let sum = |parts: &Vec<f64>| dot(parts, times);
         let [lengths, products, along] = [&self.lengths, &self.products, &self.along]
@@ -95,7 +93,6 @@ impl BySection {
 
 impl Path {
     /// From a candidate and its whitened nodes.
-    #[must_use]
     pub fn new(of: &Candidate, nodes: Vec<Vec<f64>>) -> Self {
         let product =
             |a: &Vec<f64>, b: &Vec<f64>| if a.is_empty() || b.is_empty() { 0.0 } else { dot(a, b) };
@@ -109,7 +106,6 @@ impl Path {
     }
 
     /// Whether a candidate is unchanged.
-    #[must_use]
     pub fn is_of(&self, candidate: &Candidate) -> bool {
         let beside = match (&self.beside, &candidate.beside) {
             (Some(a), Some(b)) => Arc::ptr_eq(a, b),
@@ -121,7 +117,6 @@ impl Path {
     /// Length of the change per unit of the size, between nodes at some distance on either side.
     /// Between two close nodes, scatter of the features would dominate. 0 where one of the two
     /// sizes is infinite. `nodes` are the whitened nodes, in any metric.
-    #[must_use]
     pub fn slope(&self, of: &Candidate, nodes: &[Vec<f64>], segment: usize, size: f64) -> f64 {
         let near = |at: &usize| (of.nodes[*at].size - size).abs() < APART * size.abs();
         let from = (1..=segment).rev().find(|at| !near(at)).unwrap_or(0);

@@ -22,7 +22,6 @@ pub struct Recorded {
 /// matter where the simulation has almost no content, as at wavelengths below the shortest of its
 /// track. `value` gives a parameter's value where no setting changes it. A section for which the
 /// expected deviation cannot be simulated has the noise alone.
-#[must_use]
 pub fn as_recorded(
     seen: &Observations,
     bench: Option<&Bench<'_>>,

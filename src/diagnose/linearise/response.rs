@@ -32,7 +32,6 @@ pub struct ResponseError {
 
 impl ResponseError {
     /// For the features and strata of a campaign.
-    #[must_use]
     pub fn new(seen: &Observations, settings: &Settings) -> Self {
         let all: Vec<usize> = (0..seen.sections.len()).collect();
         let strata = strata(seen, settings);
@@ -73,7 +72,6 @@ impl ResponseError {
 
     /// One error common to the features in each list, for tests.
     #[cfg(test)]
-    #[must_use]
     pub fn of(parts: &[(&[usize], f64)], sections: usize) -> Self {
         let part = |(features, sd): &(&[usize], f64)| Part {
             features: features.to_vec(),
@@ -84,7 +82,6 @@ impl ResponseError {
     }
 
     /// Columns of the covariance for the change of all features, `size` of them per section.
-    #[must_use]
     pub fn columns(&self, change: &[f64], size: usize) -> Vec<Vec<f64>> {
         let column = |part: &Part| {
             let mut column = vec![0.0; change.len()];
@@ -99,7 +96,6 @@ impl ResponseError {
     }
 
     /// For some features of some sections.
-    #[must_use]
     pub fn part(&self, sections: &[usize], features: &[usize]) -> Self {
         let places = |of: &[usize], kept: &[usize]| -> Vec<usize> {
             kept.iter().enumerate().filter(|(_, old)| of.contains(old)).map(|(at, _)| at).collect()

@@ -11,7 +11,6 @@ use crate::problem::Problem;
 /// One column per tolerated parameter: the change of all features per standard deviation. `base`
 /// are the features of the bench with its present settings. `value` gives a parameter's value where
 /// no setting changes it. `wanted` selects columns by number.
-#[must_use]
 pub fn sensitivities(
     bench: &Bench<'_>,
     settings: &Settings,
@@ -97,7 +96,6 @@ pub fn sensitivities(
 
 /// Expected deviations of the tolerances, as settings of the simulator. `value` gives a parameter's
 /// value where no setting changes it.
-#[must_use]
 pub fn expected(
     settings: &Settings,
     value: &dyn Fn(&str) -> Option<f64>,

@@ -41,7 +41,6 @@ pub struct Shown {
 
 impl Standing {
     /// Estimates the standing part from reference campaigns.
-    #[must_use]
     pub fn learn(all: &[Shown]) -> Self {
         let mut places = HashMap::new();
         for column in all.iter().flat_map(|shown| &shown.columns) {
@@ -91,7 +90,6 @@ impl Standing {
 
     /// The columns, recombined so that their coefficients are again independent and of unit
     /// variance.
-    #[must_use]
     pub fn weighed(&self, columns: Vec<Keyed>) -> Vec<Vec<f64>> {
         let Some(root) = &self.root else {
             return columns.into_iter().map(|column| column.values).collect();

@@ -40,7 +40,6 @@ impl Covariance {
     ///
     /// Variances are kept above a small share of the largest one, so that the blocks are positive
     /// definite.
-    #[must_use]
     pub fn whitener(&self) -> Whitener {
         let sections = self.diagonal.len() / self.size;
         let blocks = (0..sections).map(|section| self.block(section)).collect();
@@ -102,7 +101,6 @@ pub struct Among(Cholesky<f64, Dyn>);
 
 impl Covariance {
     /// The marginal covariance of the listed features, given as section and number.
-    #[must_use]
     pub fn among(&self, places: &[(usize, usize)]) -> Among {
         let all = |column: &[f64]| {
             DVector::from_iterator(
@@ -131,7 +129,6 @@ impl Covariance {
 
 impl Among {
     /// `r' C^-1 r`.
-    #[must_use]
     pub fn chi_squared(&self, values: &[f64]) -> f64 {
         let values = DVector::from_column_slice(values);
         values.dot(&self.0.solve(&values))
@@ -139,7 +136,6 @@ impl Among {
 
     /// `r' C^-1 r` without each block of so many features in turn: with `P = C^-1` it falls by
     /// `(P r)_b' P_bb^-1 (P r)_b`.
-    #[must_use]
     pub fn without_each(&self, values: &[f64], size: usize) -> Vec<f64> {
         let precision = self.0.inverse();
         let values = DVector::from_column_slice(values);
@@ -156,7 +152,6 @@ impl Among {
 
     /// Generalised least squares of `values` on two columns: coefficient of the second column and
     /// its standard error. Nothing if the columns are collinear.
-    #[must_use]
     pub fn slope(&self, columns: [&[f64]; 2], values: &[f64]) -> Option<(f64, f64)> {
         let [one, two] = columns.map(DVector::from_column_slice);
         let values = DVector::from_column_slice(values);
@@ -171,25 +166,21 @@ impl Among {
 
 impl Whitener {
     /// Number of features of all sections.
-    #[must_use]
     pub fn features(&self) -> usize {
         self.blocks.len() * self.size
     }
 
     /// The relative error of a simulated change that all features share.
-    #[must_use]
     pub fn common(&self) -> f64 {
         self.response.common
     }
 
     /// Columns of the model error of a simulated change, not whitened.
-    #[must_use]
     pub fn response_error(&self, change: &[f64]) -> Vec<Vec<f64>> {
         self.response.columns(change, self.size)
     }
 
     /// Whitened differences, a column each. Faster than one by one.
-    #[must_use]
     pub fn apply_all(&self, differences: &[Vec<f64>]) -> DMatrix<f64> {
         use rayon::prelude::*;
         let part = |columns: &[Vec<f64>]| {
@@ -217,7 +208,6 @@ impl Whitener {
     }
 
     /// The whitened difference; of the same length as `difference`.
-    #[must_use]
     pub fn apply(&self, difference: &[f64]) -> Vec<f64> {
         let mut z = DVector::zeros(difference.len());
         for (section, block) in self.blocks.iter().enumerate() {
@@ -238,20 +228,17 @@ impl Whitener {
 }
 
 /// `a - b`.
-#[must_use]
 pub fn less(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a - b).collect()
 }
 
 /// `a + b`.
-#[must_use]
 pub fn plus(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a + b).collect()
 }
 
 /// Inner product.
 #[inline]
-#[must_use]
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     // Eight partial sums, always in the same order, so that the result is reproducible.
     let mut sums = [0.0; 8];

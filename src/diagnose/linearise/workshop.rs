@@ -32,7 +32,6 @@ impl std::fmt::Debug for Workshop<'_> {
 
 impl Workshop<'_> {
     /// All candidates of the catalogue.
-    #[must_use]
     pub fn candidates(&self, runs: &mut Runs) -> Vec<Candidate> {
         // They do not depend on each other: all simulations are asked for at once, so that many
         // workers have one.
@@ -341,7 +340,6 @@ impl Workshop<'_> {
 
     /// The change of the features with an operation on the simulation as it would have been
     /// recorded; nothing where it cannot be applied.
-    #[must_use]
     pub fn operate(&self, operator: Operator, size: f64, channels: &[String]) -> Option<Vec<f64>> {
         let seen = self.seen;
         let touched = |name: &str| {
@@ -413,7 +411,6 @@ fn coarse(sizes: &[f64], none: f64) -> (Vec<f64>, Vec<f64>) {
 }
 
 /// An effect with values, in all sections.
-#[must_use]
 pub fn applied(effect: &Effect, values: Vec<(String, f64)>) -> Applied {
     Applied { effect: effect.name.clone(), values, channels: Vec::new(), confined: None }
 }

@@ -58,7 +58,6 @@ impl Bench<'_> {
     }
 
     /// The value that is set for a parameter in a section, if any.
-    #[must_use]
     pub fn value(&self, section: usize, key: &str) -> Option<f64> {
         self.there(section)
             .rev()

@@ -21,7 +21,6 @@ pub struct Cache {
 
 impl Cache {
     /// A cache in `folder` for one campaign and simulator.
-    #[must_use]
     pub fn new(folder: &Path, of: String) -> Self {
         Self { folder: folder.to_path_buf(), of, damaged: Arc::default() }
     }
@@ -42,7 +41,6 @@ impl Cache {
     }
 
     /// The cached features of a simulation, if present; `wanted` is their number.
-    #[must_use]
     pub fn get(
         &self,
         identity: &str,
@@ -70,7 +68,6 @@ impl Cache {
     }
 
     /// A warning of damaged entries, which were computed again.
-    #[must_use]
     pub fn warning(&self) -> Option<Problem> {
         let damaged = self.damaged.lock().ok()?;
         let first = damaged.iter().min()?.display().to_string();

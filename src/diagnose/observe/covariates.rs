@@ -20,7 +20,6 @@ pub struct Covariate {
 
 /// Covariates: the order of the sections, the direction of the curve, and the columns that the
 /// catalogue lists.
-#[must_use]
 pub fn covariates(settings: &Settings, seen: &Observations) -> Vec<Covariate> {
     let sections = || seen.sections.iter().map(|observed| &observed.section);
     let order = (0..seen.sections.len()).map(|at| at as f64).collect();

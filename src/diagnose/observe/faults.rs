@@ -6,7 +6,6 @@ use crate::effects::Signals;
 use crate::result::diagnosis::Fault;
 
 /// All faults of the channels, each with its sections.
-#[must_use]
 pub fn faults(sections: &[Observed], channels: &[String]) -> Vec<Fault> {
     let mut found: Vec<Fault> = Vec::new();
     for channel in channels {

@@ -27,7 +27,6 @@ pub struct Limit {
 impl Limit {
     /// For samples at a rate in Hz, up to a frequency in Hz. Nothing where they have hardly any
     /// higher frequencies.
-    #[must_use]
     pub fn new(rate: f64, frequency: f64) -> Option<Self> {
         let every = (rate / (2.0 * frequency)).floor();
         if !every.is_finite() || every < 2.0 {
@@ -77,7 +76,6 @@ pub struct Increments {
 impl Increments {
     /// From the changes of a channel with the effects, and both records of it. Nothing where the
     /// section is too short.
-    #[must_use]
     pub fn new(
         changes: &[Vec<f64>],
         simulated: &[f64],
@@ -123,7 +121,6 @@ impl Increments {
     }
 
     /// A hash of the basis and of the record it refers to.
-    #[must_use]
     pub fn identity(&self) -> String {
         let numbers = self.basis.iter().flatten().chain(&self.filter).chain(&self.reference);
         sha256(&numbers.flat_map(|value| value.to_le_bytes()).collect::<Vec<u8>>())
@@ -131,7 +128,6 @@ impl Increments {
 
     /// The coordinates of a record of the channel relative to the simulated record; nothing for
     /// another number of samples.
-    #[must_use]
     pub fn of(&self, values: &[f64]) -> Option<Vec<f64>> {
         if values.len() != self.samples {
             return None;

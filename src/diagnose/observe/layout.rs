@@ -66,7 +66,6 @@ pub struct Feature {
 
 impl Layout {
     /// All features of a section, channel by channel.
-    #[must_use]
     pub fn features(&self) -> Vec<Feature> {
         let mut features = Vec::new();
         for (channel, of) in self.channels.iter().enumerate() {
@@ -111,7 +110,6 @@ pub struct Spectrum {
 /// by the next value inside, so that single spikes have no influence. For an oscillating signal it
 /// scatters two to four times less than the median, since whole periods cancel. `None` of an empty
 /// slice.
-#[must_use]
 pub fn level(values: &[f64]) -> Option<f64> {
     let last = values.len().checked_sub(1)?;
     let out = (SPIKES * values.len() as f64) as usize;
@@ -132,7 +130,6 @@ pub fn level(values: &[f64]) -> Option<f64> {
 impl Spectrum {
     /// Spectrum with a Hann taper, padded to a power of two of at least twice the length, so that
     /// correlations do not wrap around.
-    #[must_use]
     pub fn new(piece: &Piece) -> Self {
         let n = piece.values.len();
         let padded = (2 * n.max(8)).next_power_of_two();
@@ -173,7 +170,6 @@ impl Spectrum {
     }
 
     /// Mean square between two frequencies in Hz.
-    #[must_use]
     pub fn power(&self, low: f64, high: f64) -> f64 {
         self.lines[self.range(low, high)].iter().map(|(re, im)| re * re + im * im).sum::<f64>()
             * self.scale
@@ -181,7 +177,6 @@ impl Spectrum {
 
     /// Regression of `self` on `reference` over a band: the gain, and the lag in samples of the
     /// largest correlation, of either sign.
-    #[must_use]
     pub fn alike(&self, reference: &Self, band: (f64, f64), furthest: usize) -> (f64, f64) {
         self.correlated(reference, band, furthest)
             .map_or((0.0, 0.0), |alike| (alike.gain(), alike.lag()))
@@ -189,7 +184,6 @@ impl Spectrum {
 
     /// The second-largest peak of the correlation as a share of the largest. Near 1, the lag is not
     /// unique, as for a slow periodic motion.
-    #[must_use]
     pub fn next_best(&self, reference: &Self, band: (f64, f64), furthest: usize) -> f64 {
         self.correlated(reference, band, furthest).map_or(0.0, |alike| alike.next_best())
     }

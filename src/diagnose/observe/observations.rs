@@ -212,7 +212,6 @@ impl Observations {
 
     /// What the features of a simulated record depend on besides the record: under another
     /// identity, kept features are not valid.
-    #[must_use]
     pub fn identity(&self) -> &str {
         self.hashed.get_or_init(|| {
             let named = |observed: &Observed| {
@@ -243,25 +242,21 @@ impl Observations {
     }
 
     /// Sections that do not repeat an earlier one.
-    #[must_use]
     pub fn first_runs(&self) -> Vec<usize> {
         (0..self.sections.len()).filter(|at| !self.sections[*at].again).collect()
     }
 
     /// Number of features of all sections.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.sections.len() * self.features.len()
     }
 
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
     /// Features of the signals of a section. `noisy` adds the power of the declared noise, which
     /// simulated signals do not contain.
-    #[must_use]
     pub fn of(&self, at: usize, signals: &Signals, noisy: bool) -> Vec<f64> {
         let mut out = Vec::with_capacity(self.features.len());
         for channel in 0..self.layout.channels.len() {
@@ -298,20 +293,17 @@ impl Observations {
     }
 
     /// Features of all sections, concatenated.
-    #[must_use]
     pub fn all(&self, noisy: bool, signals: impl Fn(&Observed) -> &Signals + Sync) -> Vec<f64> {
         let each = |at: usize| self.of(at, signals(&self.sections[at]), noisy);
         (0..self.sections.len()).into_par_iter().flat_map_iter(each).collect()
     }
 
     /// Index of a feature of a section in the list of all.
-    #[must_use]
     pub fn place(&self, section: usize, feature: usize) -> usize {
         section * self.features.len() + feature
     }
 
     /// Sampling rate in 1/s and length in s of a section.
-    #[must_use]
     pub fn extent(&self, at: usize) -> (f64, f64) {
         let observed = &self.sections[at];
         let inside = observed
@@ -324,7 +316,6 @@ impl Observations {
     }
 
     /// Index of the channel's feature of a kind.
-    #[must_use]
     pub fn find(&self, channel: usize, kind: Kind) -> Option<usize> {
         self.features.iter().position(|feature| *feature == Feature { channel, kind })
     }

@@ -24,7 +24,6 @@ pub struct Observed {
 }
 
 /// The part of a channel inside its section.
-#[must_use]
 pub fn piece(signals: &Signals, name: &str, section: &Section) -> Option<Piece> {
     let channel = signals.channel(name)?;
     let from = signals.axis.partition_point(|x| *x < section.start);

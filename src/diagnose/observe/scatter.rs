@@ -14,7 +14,6 @@ pub struct Scatter {
 }
 
 /// Estimates it from the measured and the simulated piece.
-#[must_use]
 pub fn scatter(
     layout: &Layout,
     measured: &Piece,

@@ -4,7 +4,6 @@ use super::observations::Observations;
 use crate::diagnose::settings::Settings;
 
 /// The stratum of a section.
-#[must_use]
 pub fn stratum_of<'a>(seen: &'a Observations, settings: &Settings, section: usize) -> &'a str {
     settings
         .stratum
@@ -14,7 +13,6 @@ pub fn stratum_of<'a>(seen: &'a Observations, settings: &Settings, section: usiz
 }
 
 /// Sections by stratum, in the order in which strata first appear.
-#[must_use]
 pub fn strata(seen: &Observations, settings: &Settings) -> Vec<Vec<usize>> {
     let mut found: Vec<(String, Vec<usize>)> = Vec::new();
     for at in seen.first_runs() {

@@ -55,7 +55,6 @@ fn noise(fitter: &Fitter<'_>, seed: u64, draw: usize) -> Vec<f64> {
 }
 
 /// Evidence that the best candidate exceeds in this share of the campaigns with nothing hidden.
-#[must_use]
 pub fn limit(fitter: &Fitter<'_>, seed: u64, share: f64) -> f64 {
     let mut most: Vec<f64> = (0..NOTHING_HIDDEN)
         .into_par_iter()
@@ -69,7 +68,6 @@ pub fn limit(fitter: &Fitter<'_>, seed: u64, share: f64) -> f64 {
 impl Draws<'_> {
     /// Share of campaigns with nothing hidden in which some candidate meets the criteria of a first
     /// member.
-    #[must_use]
     pub fn falsely_named(&self) -> f64 {
         let (fitter, bars) = (self.fitter, self.bars);
         let named = |draw: &usize| {
@@ -89,7 +87,6 @@ impl Draws<'_> {
 
     /// Searches campaigns with a single effect, with two, and with an effect that the search does
     /// not know.
-    #[must_use]
     pub fn calibrate(&self) -> Calibration {
         let cases: Vec<Hidden> =
             [(Hidden::One, SINGLES), (Hidden::Two, PAIRS), (Hidden::Outside, OUTSIDE)]

@@ -41,7 +41,6 @@ pub enum Fault {
 }
 
 impl<'a> Search<'a> {
-    #[must_use]
     pub fn new(fitter: &'a Fitter<'a>, z: &'a [f64], bars: &'a Bars, far: Far<'a>) -> Self {
         Self { fitter, z, bars, far, scored: Mutex::default() }
     }
@@ -63,13 +62,11 @@ impl<'a> Search<'a> {
     }
 
     /// Evidence of a set; zero for the empty one.
-    #[must_use]
     pub fn evidence(&self, set: &[Member]) -> f64 {
         self.joint(set).map_or(0.0, |joint| joint.evidence)
     }
 
     /// A set with all members fitted together, in the given order.
-    #[must_use]
     pub fn chosen(&self, set: &[Member]) -> Chosen {
         let Some(joint) = self.joint(set) else { return Chosen::none(self.z) };
         let member = |at: usize| {
@@ -96,13 +93,11 @@ impl<'a> Search<'a> {
     }
 
     /// Whether a member is named: beyond its declared tolerance, if it has one.
-    #[must_use]
     pub fn is_named(&self, member: &Fitted) -> bool {
         (self.far)(&self.fitter.candidates[member.candidate], member.size) >= TOLERANCE_SD
     }
 
     /// The candidates with the most evidence beside a set, each under its best mask, most first.
-    #[must_use]
     pub fn further(&self, set: &[Member], barred: &[usize], most: usize) -> Vec<Fitted> {
         let beside = self.joint(set);
         let rest = beside.as_ref().map_or_else(
@@ -157,7 +152,6 @@ impl<'a> Search<'a> {
     }
 
     /// The requirement that a member of a set does not meet.
-    #[must_use]
     pub fn fault(&self, set: &[Member], at: usize) -> Option<Fault> {
         let joint = self.joint(set)?;
         let member = joint.members.iter().find(|own| (own.candidate, own.mask) == set[at])?;
@@ -185,7 +179,6 @@ impl<'a> Search<'a> {
 
     /// The set with the most evidence that steps from `start` reach. A member of `start` that does
     /// not meet the requirements is dropped first.
-    #[must_use]
     pub fn run(&self, start: &[Member], barred: &[usize]) -> Vec<Member> {
         let mut set = self.dropped(start);
         while let Some(next) = self.step(&set, barred) {
@@ -255,14 +248,12 @@ impl<'a> Search<'a> {
 }
 
 /// A set without one of its members.
-#[must_use]
 pub fn without(set: &[Member], at: usize) -> Vec<Member> {
     let others = set.iter().enumerate().filter(|(other, _)| *other != at);
     others.map(|(_, member)| *member).collect()
 }
 
 /// A set with one more member.
-#[must_use]
 pub fn with(set: &[Member], member: Member) -> Vec<Member> {
     [set, &[member]].concat()
 }

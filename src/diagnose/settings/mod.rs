@@ -198,7 +198,6 @@ pub struct Position {
 
 impl Settings {
     /// 1 in a curve, -1 in a mirrored one, 0 on straight track.
-    #[must_use]
     pub fn side(&self, section: &Section) -> f64 {
         match (section.number("radius").filter(|radius| *radius > 0.0), &self.mirror) {
             (None, _) => 0.0,
@@ -208,7 +207,6 @@ impl Settings {
     }
 
     /// All quantities that a campaign may declare, with their units.
-    #[must_use]
     pub fn tolerated(&self) -> Vec<(&str, Unit)> {
         let mut all: Vec<(&str, Unit)> =
             self.tolerances.iter().map(|one| (one.name.as_str(), one.unit.clone())).collect();

@@ -148,7 +148,6 @@ impl Evaluated {
 
     /// The same with other values of the sections. Those are used that are used here, as far as
     /// they have values. What is found of the data stands: they are not asked about again.
-    #[must_use]
     pub fn in_trial(&self, plan: &Plan, values: Vec<SectionValues>) -> Self {
         let mut units = self.units.clone();
         for (unit, values) in units.iter_mut().zip(&values) {
@@ -211,7 +210,6 @@ impl Evaluated {
     }
 
     /// The same with some sections only; the others are not used.
-    #[must_use]
     pub fn with_sections(&self, keeps: &dyn Fn(&str) -> bool) -> Self {
         let mut some = self.clone();
         let units = some.units.iter_mut().filter(|unit| !keeps(&unit.name));
@@ -220,7 +218,6 @@ impl Evaluated {
     }
 
     /// The same with the values of one quantity only.
-    #[must_use]
     pub fn with_quantity(&self, quantity: usize) -> Self {
         let mut some = self.clone();
         for values in &mut some.values {
