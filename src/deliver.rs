@@ -34,10 +34,7 @@ impl Reports {
 /// # Errors
 /// A table, a template or a text cannot be written.
 pub fn certification(found: &Certification, reports: Reports) -> Result<Files, Problems> {
-    let (results, tables) = rayon::join(
-        || result::text(found),
-        || tables::certification(found).map_err(|error| error.to_string()),
-    );
+    let (results, tables) = rayon::join(|| result::text(found), || tables::certification(found));
     let mut files = in_folder(tables)?;
     if reports.pdf || reports.html {
         let data = view::document(found);
@@ -56,31 +53,28 @@ pub fn certification(found: &Certification, reports: Reports) -> Result<Files, P
 /// # Errors
 /// As [`certification`].
 pub fn study(found: &Study, reports: Reports) -> Result<Files, Problems> {
-    let mut files = in_folder(tables::study(found).map_err(|error| error.to_string()))?;
+    let tables = in_folder(tables::study(found))?;
     let (data, figures) = (report::study::document(found), report::study::figures(found));
     let name = ("study.json", "Every number of this study");
-    files.extend(document(name, result::text(found), &data, &figures, reports)?);
-    Ok(files)
+    document(name, result::text(found), &data, &figures, reports, tables)
 }
 
 /// # Errors
 /// As [`certification`].
 pub fn comparison(found: &Comparison, reports: Reports) -> Result<Files, Problems> {
-    let mut files = in_folder(tables::comparison(found).map_err(|error| error.to_string()))?;
+    let tables = in_folder(tables::comparison(found))?;
     let (data, figures) = (report::comparison::document(found), report::comparison::figures(found));
     let name = ("comparison.json", "Every number of this comparison");
-    files.extend(document(name, result::text(found), &data, &figures, reports)?);
-    Ok(files)
+    document(name, result::text(found), &data, &figures, reports, tables)
 }
 
 /// # Errors
 /// As [`certification`].
 pub fn impact(found: &Impact, reports: Reports) -> Result<Files, Problems> {
-    let mut files = in_folder(tables::impact(found).map_err(|error| error.to_string()))?;
+    let tables = in_folder(tables::impact(found))?;
     let name = ("impact.json", "Every number of this report");
     let data = report::impact::document(found);
-    files.extend(document(name, result::text(found), &data, &[], reports)?);
-    Ok(files)
+    document(name, result::text(found), &data, &[], reports, tables)
 }
 
 /// # Errors
@@ -90,10 +84,11 @@ pub fn diagnosis(outcome: &Outcome, reports: Reports) -> Result<Files, Problems>
     let (data, figures) =
         (report::diagnosis::document(found, &outcome.before), report::diagnosis::figures(found));
     let name = ("diagnosis.json", "Every number of this diagnosis");
-    document(name, result::text(found), &data, &figures, reports)
+    document(name, result::text(found), &data, &figures, reports, Files::new())
 }
 
-/// A document as report.pdf with its numbers attached, as report.html, and the numbers as `name`.
+/// Tables, a document as report.pdf with its numbers attached, as report.html, and the numbers as
+/// `name`.
 ///
 /// # Errors
 /// A template or a text cannot be typeset.
@@ -103,13 +98,14 @@ pub fn document(
     data: &Document,
     figures: &[(String, String)],
     reports: Reports,
+    mut files: Files,
 ) -> Result<Files, Problems> {
     let pdf = || {
         let attachment =
             Attachment { name, mime: "application/json", bytes: numbers.as_bytes(), description };
         Ok(typst::typeset(data, figures, &[attachment])?.bytes)
     };
-    let mut files = both(reports, pdf, || html::html(data, figures))?;
+    files.extend(both(reports, pdf, || html::html(data, figures))?);
     files.push((name.into(), numbers.into_bytes()));
     Ok(files)
 }
@@ -135,9 +131,7 @@ fn both(
 }
 
 /// Tables in the folder `tables`.
-fn in_folder<T: Into<Vec<u8>>>(
-    tables: Result<Vec<(String, T)>, String>,
-) -> Result<Files, Problems> {
-    let tables = tables.map_err(|says| Problems(vec![Problem::error("table", says)]))?;
-    Ok(tables.into_iter().map(|(name, bytes)| (format!("tables/{name}"), bytes.into())).collect())
+fn in_folder(tables: Result<Files, csv::Error>) -> Result<Files, Problems> {
+    let tables = tables.map_err(|error| Problem::error("table", error.to_string()))?;
+    Ok(tables.into_iter().map(|(name, bytes)| (format!("tables/{name}"), bytes)).collect())
 }

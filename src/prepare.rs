@@ -12,7 +12,7 @@ use crate::effects::{self, Catalogue};
 use crate::import::check::NotWritten;
 use crate::import::mapping::{Mapping, agree};
 use crate::library;
-use crate::problem::{Problem, Problems, error};
+use crate::problem::{Problem, Problems, all, error};
 use crate::run::{self, find, needs::needs};
 use crate::simulate::{Section, model_parameters, sections};
 use crate::source::{Source, Spanned};
@@ -167,6 +167,11 @@ fn with_sections(mut opened: Opened, problems: &mut Problems) -> Option<Opened> 
     Some(opened)
 }
 
+/// Opens campaigns.
+pub fn opened_all(folders: &[PathBuf], problems: &mut Problems) -> Option<Vec<Campaign>> {
+    all(folders.iter().map(|folder| Campaign::open(folder, problems)))
+}
+
 /// As [`prepare_all`], before sections are looked for.
 pub fn compiled_for(
     folders: &[PathBuf],
@@ -174,10 +179,7 @@ pub fn compiled_for(
     set: &[String],
     problems: &mut Problems,
 ) -> Option<Opened> {
-    let opened: Vec<Option<Campaign>> =
-        folders.iter().map(|folder| Campaign::open(folder, problems)).collect();
-    let campaigns: Vec<Campaign> = opened.into_iter().collect::<Option<_>>()?;
-    compiled_with(campaigns, protocol.map(Protocol::Named), set, problems)
+    compiled_with(opened_all(folders, problems)?, protocol.map(Protocol::Named), set, problems)
 }
 
 fn compiled_with(

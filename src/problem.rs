@@ -382,6 +382,11 @@ impl Problems {
     }
 }
 
+/// All of them, or nothing if one is missing; each is looked at, so that all problems are told.
+pub fn all<T>(found: impl IntoIterator<Item = Option<T>>) -> Option<Vec<T>> {
+    found.into_iter().collect::<Vec<_>>().into_iter().collect()
+}
+
 /// The most similar candidate of a word: the only one that begins with it, or one with a small edit
 /// distance.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {

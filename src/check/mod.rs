@@ -135,11 +135,6 @@ fn if_written<T>(checked: Option<Option<T>>) -> Option<Option<T>> {
     checked.map_or(Some(None), |checked| checked.map(Some))
 }
 
-/// All of them, each of which is looked at; nothing where one has an error.
-fn all<T>(found: impl IntoIterator<Item = Option<T>>) -> Option<Vec<T>> {
-    found.into_iter().collect::<Vec<_>>().into_iter().collect()
-}
-
 /// The plan of a protocol with its parameters set; `None` after a problem of severity error.
 pub fn check(
     family: &family::Family,

@@ -3,8 +3,8 @@
 
 pub(super) use super::plan::*;
 pub(super) use super::scope::Scope;
-pub(super) use super::{Checker, all, if_written};
-pub(super) use crate::problem::{Problem, Problems, error, problem, warning};
+pub(super) use super::{Checker, if_written};
+pub(super) use crate::problem::{Problem, Problems, all, error, problem, warning};
 pub(super) use crate::source::{Located, Span, Spanned};
 pub(super) use crate::syntax::document::{Block, Document, Field, Text};
 pub(super) use crate::syntax::from_pest;

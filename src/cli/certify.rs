@@ -25,11 +25,12 @@ pub struct Certify {
 impl Certify {
     pub fn run(self, console: &Console) -> Done {
         start_jobs(self.jobs)?;
-        let mut problems = Problems::default();
-        let opened =
-            prepare_all(&self.campaigns, self.protocol.as_deref(), &self.set, &mut problems);
-        check_outputs(&self.report.out, REPORT, opened.as_ref(), &mut problems);
-        let opened = console.sound(opened, &problems)?;
+        let opened = console.read(|problems| {
+            let protocol = self.protocol.as_deref();
+            let opened = prepare_all(&self.campaigns, protocol, &self.set, problems)?;
+            check_outputs(&self.report.out, REPORT, &opened.campaigns, problems);
+            Some(opened)
+        })?;
         let key = self.report.key()?;
         let found = console.with_progress(opened.campaigns().sections(), |progress| {
             opened.certify(self.report.settings(), progress)

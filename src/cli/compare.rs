@@ -39,9 +39,7 @@ pub struct Compare {
 impl Compare {
     pub fn run(self, console: &Console) -> Done {
         start_jobs(self.jobs)?;
-        let mut problems = Problems::default();
-        let prepared = self.prepared(&mut problems);
-        let prepared = console.sound(prepared, &problems)?;
+        let prepared = console.read(|problems| self.prepared(problems))?;
         let found = console.with_progress(prepared.steps(), |progress| prepared.compare(progress));
         self.write(&found, console)
     }
@@ -49,14 +47,10 @@ impl Compare {
     fn prepared(&self, problems: &mut Problems) -> Option<Prepared> {
         let sizes = self.sizes(problems);
         let set = set_by_hand(&self.set, problems);
-        let campaigns: Vec<Option<Campaign>> =
-            self.campaigns.iter().map(|folder| Campaign::open(folder, problems)).collect();
-        let families: Vec<_> = self.protocol.iter().map(|name| load(name, problems)).collect();
-        let campaigns: Vec<Campaign> = campaigns.into_iter().collect::<Option<_>>()?;
-        let families = families.into_iter().collect::<Option<_>>()?;
-        for campaign in &campaigns {
-            problems.add(check_folder(&self.out, REPORT, campaign).err());
-        }
+        let campaigns = opened_all(&self.campaigns, problems);
+        let families = all(self.protocol.iter().map(|name| load(name, problems)));
+        let (campaigns, families) = (campaigns?, families?);
+        check_outputs(&self.out, REPORT, &campaigns, problems);
         Prepared::new(families, campaigns, Settings { sizes: sizes?, set: set? }, problems)
     }
 
@@ -81,14 +75,14 @@ impl Compare {
     /// Writes all files or none.
     fn write(&self, found: &Comparison, console: &Console) -> Done {
         let reports = if self.no_report { Reports::NONE } else { Reports::ALL };
-        let files = deliver::comparison(found, reports).map_err(Ended::unfinished)?;
-        console.write_all(SetKind::Report, &self.out, &files)?;
+        let files = deliver::comparison(found, reports);
         let cell = |cell: &Cell| {
             let reason = || Some(cell.reasons.first()?.text().to_string());
             let why = cell.decided_by.clone().or_else(reason).unwrap_or_default();
             format!("  {}, {}: {} ({why})\n", cell.campaign, cell.protocol, cell.verdict)
         };
         let cells = found.verdicts.iter().map(cell);
-        console.written(&told(report::TITLE, &report::opening(found), cells), &self.out)
+        let told = told(report::TITLE, &report::opening(found), cells);
+        console.report(files, &told, &self.out)
     }
 }

@@ -37,13 +37,12 @@ pub struct Exercise {
 impl Exercise {
     pub fn run(self, console: &Console) -> Done {
         start_jobs(self.jobs)?;
-        let mut problems = Problems::default();
-        let campaigns = self.from.as_slice();
-        let opened = compiled_for(campaigns, Some(&self.protocol), &self.set, &mut problems);
-        for campaign in opened.iter().flat_map(|opened| &opened.campaigns) {
-            problems.add(check_folder(&self.out, CAMPAIGN, campaign).err());
-        }
-        let Opened { compiled, campaigns, overrides, .. } = console.sound(opened, &problems)?;
+        let Opened { compiled, campaigns, overrides, .. } = console.read(|problems| {
+            let campaigns = self.from.as_slice();
+            let opened = compiled_for(campaigns, Some(&self.protocol), &self.set, problems)?;
+            check_outputs(&self.out, CAMPAIGN, &opened.campaigns, problems);
+            Some(opened)
+        })?;
         let mut outputs = Outputs::of(SetKind::Campaign, &self.out);
         let steps = limits_of(&compiled);
         let found = console.with_progress(steps, |progress| {

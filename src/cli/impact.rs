@@ -37,9 +37,7 @@ pub struct Impact {
 impl Impact {
     pub fn run(self, console: &Console) -> Done {
         start_jobs(self.jobs)?;
-        let mut problems = Problems::default();
-        let prepared = self.prepared(&mut problems);
-        let prepared = console.sound(prepared, &problems)?;
+        let prepared = console.read(|problems| self.prepared(problems))?;
         let found =
             console.with_progress(prepared.steps(), |progress| prepared.impact(progress))?;
         self.write(&found, console)
@@ -50,18 +48,10 @@ impl Impact {
         let families = [&self.old, &self.new].map(|name| load(name, problems));
         let (files, folders): (Vec<PathBuf>, Vec<PathBuf>) =
             self.over.iter().cloned().partition(|path| matches!(disk::is_folder(path), Ok(false)));
-        let inputs: Vec<&Path> = files.iter().map(PathBuf::as_path).collect();
-        for name in REPORT {
-            problems.add(check_not_input(&self.out.join(name), &inputs).err());
-        }
-        problems.add(check_out(&self.out).err());
+        check_report(&self.out, &files, problems);
         let values = opened(&files, problems);
-        let campaigns: Vec<Option<Campaign>> =
-            folders.iter().map(|folder| Campaign::open(folder, problems)).collect();
-        let campaigns: Vec<Campaign> = campaigns.into_iter().collect::<Option<_>>()?;
-        for campaign in &campaigns {
-            problems.add(check_folder(&self.out, REPORT, campaign).err());
-        }
+        let campaigns = opened_all(&folders, problems)?;
+        check_outputs(&self.out, REPORT, &campaigns, problems);
         let archive = Archive { campaigns, values: by_campaign(values?, problems)?, set: set? };
         let [old, new] = families;
         let names = [self.old.clone(), self.new.clone()];
@@ -71,8 +61,7 @@ impl Impact {
     /// Writes all files or none.
     fn write(&self, found: &impact::Impact, console: &Console) -> Done {
         let reports = if self.no_report { Reports::NONE } else { Reports::ALL };
-        let files = deliver::impact(found, reports).map_err(Ended::unfinished)?;
-        console.write_all(SetKind::Report, &self.out, &files)?;
+        let files = deliver::impact(found, reports);
         let line = |flip: &Flip| {
             let sets: Vec<String> = flip.minimal.iter().map(|set| set.join(" + ")).collect();
             format!(
@@ -84,7 +73,8 @@ impl Impact {
             )
         };
         let flips = found.flips.iter().map(line);
-        console.written(&told(report::TITLE, &report::opening(found), flips), &self.out)
+        let told = told(report::TITLE, &report::opening(found), flips);
+        console.report(files, &told, &self.out)
     }
 }
 

@@ -2,12 +2,12 @@
 
 use std::error::Error;
 use std::num::NonZeroUsize;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::output::Ended;
-use super::places::check_folder;
-use crate::certify::Opened;
-pub use crate::prepare::{compiled_for, prepare, prepare_all, with_protocols};
+use super::places::{REPORT, check_folder, check_not_input, check_out};
+use crate::data::Campaign;
+pub use crate::prepare::{compiled_for, opened_all, prepare, prepare_all, with_protocols};
 use crate::problem::{Problem, Problems};
 
 /// Maximum number of records processed in parallel. Each takes a thread, and memory for its text
@@ -46,8 +46,17 @@ pub fn start_jobs(jobs: Option<NonZeroUsize>) -> Result<(), Ended> {
 }
 
 /// Refuses an output folder if files of one of the campaigns would be overwritten.
-pub fn check_outputs(out: &Path, names: &[&str], opened: Option<&Opened>, problems: &mut Problems) {
-    for campaign in opened.iter().flat_map(|opened| &opened.campaigns) {
+pub fn check_outputs(out: &Path, names: &[&str], of: &[Campaign], problems: &mut Problems) {
+    for campaign in of {
         problems.add(check_folder(out, names, campaign).err());
     }
+}
+
+/// Refuses an output folder in which a report would overwrite one of some files.
+pub fn check_report(out: &Path, files: &[PathBuf], problems: &mut Problems) {
+    let inputs: Vec<&Path> = files.iter().map(PathBuf::as_path).collect();
+    for name in REPORT {
+        problems.add(check_not_input(&out.join(name), &inputs).err());
+    }
+    problems.add(check_out(out).err());
 }

@@ -54,8 +54,7 @@ impl New {
             Pair::read(format!("R{}", at + 1), &pair[0], &pair[1], &mut told, problems)
         };
         // Problems of all records are told.
-        let pairs: Vec<Option<Pair>> = self.from.chunks_exact(2).enumerate().map(read).collect();
-        let pairs: Vec<Pair> = pairs.into_iter().collect::<Option<_>>()?;
+        let pairs = all(self.from.chunks_exact(2).enumerate().map(read))?;
         let made = problems.value(files(name, DOMAINS[self.domain as usize], &pairs))?;
         // What is written must be sound, whatever the columns are called.
         let (_, text) = made.files.iter().find(|(path, _)| path == PROTOCOL_FILE)?;

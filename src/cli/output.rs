@@ -7,6 +7,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::Color;
 use crate::data::write::{Outputs, write_whole};
+use crate::deliver::Files;
 use crate::disk::SetKind;
 use crate::problem::{Problem, Problems, acts, plain};
 use crate::run::Progress;
@@ -158,6 +159,16 @@ impl Console {
         input.filter(|_| !problems.any_error()).ok_or(Problems::default().into())
     }
 
+    /// Reads inputs and prints their problems, as [`Self::sound`] does.
+    ///
+    /// # Errors
+    /// An input is wrong.
+    pub fn read<T>(&self, read: impl FnOnce(&mut Problems) -> Option<T>) -> Result<T, Ended> {
+        let mut problems = Problems::default();
+        let input = read(&mut problems);
+        self.sound(input, &problems)
+    }
+
     /// Does work of so many steps beside a progress bar on a terminal; nothing is shown if the
     /// output is redirected.
     pub fn with_progress<T>(&self, steps: usize, work: impl FnOnce(Progress<'_>) -> T) -> T {
@@ -192,6 +203,15 @@ impl Console {
         let printed = self.print(summary);
         self.say(&format!("written: {}", out.display()));
         printed
+    }
+
+    /// Writes a report, all of its files or none, and tells what was found.
+    ///
+    /// # Errors
+    /// A file could not be made or cannot be written.
+    pub fn report(&self, files: Result<Files, Problems>, summary: &Lines, out: &Path) -> Done {
+        self.write_all(SetKind::Report, out, &files.map_err(Ended::unfinished)?)?;
+        self.written(summary, out)
     }
 
     /// Writes a set of files, all or none.

@@ -99,14 +99,10 @@ pub struct Judge {
 impl Judge {
     pub fn run(self, console: &Console) -> Done {
         start_jobs(None)?;
-        let mut problems = Problems::default();
-        let inputs: Vec<&Path> = self.values.iter().map(PathBuf::as_path).collect();
-        for name in super::places::REPORT {
-            problems.add(check_not_input(&self.report.out.join(name), &inputs).err());
-        }
-        problems.add(check_out(&self.report.out).err());
-        let joined = joined(&self.values, &mut problems);
-        let joined = console.sound(joined, &problems)?;
+        let joined = console.read(|problems| {
+            check_report(&self.report.out, &self.values, problems);
+            joined(&self.values, problems)
+        })?;
         let key = self.report.key()?;
         let found = joined.certification(self.report.settings())?;
         self.report.write(found, key.as_ref(), console)

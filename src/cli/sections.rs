@@ -43,22 +43,17 @@ pub struct Sections {
 impl Sections {
     pub fn run(self, console: &Console) -> Done {
         start_jobs(self.jobs)?;
-        let mut problems = Problems::default();
-        let opened = compiled_for(
-            std::slice::from_ref(&self.campaign),
-            self.protocol.as_deref(),
-            &self.set,
-            &mut problems,
-        );
-        for campaign in opened.iter().flat_map(|opened| &opened.campaigns) {
-            let inputs = campaign.inputs();
+        let Opened { compiled, campaigns, .. } = console.read(|problems| {
+            let campaigns = std::slice::from_ref(&self.campaign);
+            let opened = compiled_for(campaigns, self.protocol.as_deref(), &self.set, problems)?;
+            let inputs = opened.campaigns[0].inputs();
             let files: Vec<_> = inputs.files.iter().map(PathBuf::as_path).collect();
-            let table = self.out.as_ref().map_or(Ok(()), |out| check_file(out, &files));
-            let copy =
-                self.cut.as_ref().map_or(Ok(()), |folder| check_folder(folder, CAMPAIGN, campaign));
-            problems.add([table, copy].into_iter().filter_map(Result::err));
-        }
-        let Opened { compiled, campaigns, .. } = console.sound(opened, &problems)?;
+            problems.add(self.out.as_ref().and_then(|out| check_file(out, &files).err()));
+            if let Some(folder) = &self.cut {
+                check_outputs(folder, CAMPAIGN, &opened.campaigns, problems);
+            }
+            Some(opened)
+        })?;
         // A table that the campaign has can be cut by; it is not looked for again.
         let given = campaigns[0].sections.is_some() && self.out.is_none();
         let (campaign, told) = if given {

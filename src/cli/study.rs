@@ -130,7 +130,8 @@ impl Study {
         let asked = self.asked(&mut problems);
         let opened =
             prepare_all(&common.campaigns, common.protocol.as_deref(), &common.set, &mut problems);
-        check_outputs(&common.out, REPORT, opened.as_ref(), &mut problems);
+        let campaigns = opened.as_ref().map_or(&[][..], |opened| &opened.campaigns);
+        check_outputs(&common.out, REPORT, campaigns, &mut problems);
         let (asked, opened) = console.sound(asked.zip(opened), &problems)?;
         let steps = asked.ready(&opened)?;
         let study = console
@@ -241,12 +242,11 @@ impl Common {
 
 /// Writes all files or none.
 fn write(common: &Common, study: &found::Study, console: &Console) -> Done {
-    let files = deliver::study(study, Reports::ALL).map_err(Ended::unfinished)?;
-    console.write_all(SetKind::Report, &common.out, &files)?;
+    let files = deliver::study(study, Reports::ALL);
     let opening = report::opening(study);
     let fact = |fact: &Fact| format!("  {}: {}\n", fact.name, fact.value.letters());
     let facts = opening.facts.iter().map(fact);
-    console.written(&told(&report::title(study), &opening, facts), &common.out)
+    console.report(files, &told(&report::title(study), &opening, facts), &common.out)
 }
 
 /// What a document says at its beginning, and some facts.

@@ -59,7 +59,7 @@ use crate::certify::{Compiled, Set, protocol_info};
 use crate::check::diff::Change;
 use crate::check::family::Family;
 use crate::data::Campaign;
-use crate::problem::Problems;
+use crate::problem::{Problems, all};
 use crate::result::comparison::{Compared, Comparison, OnCampaign, Work};
 use crate::result::{FORMAT, THIS};
 use crate::run::find;
@@ -155,9 +155,8 @@ impl Prepared {
             _ => (Vec::new(), None),
         };
         let opened = subject::opened(&protocols, campaigns, &changes, &settings, problems)?;
-        let campaigns: Vec<Option<WithProtocols>> =
-            opened.into_iter().map(|opened| with_found_sections(opened, problems)).collect();
-        let campaigns = campaigns.into_iter().collect::<Option<_>>()?;
+        let campaigns =
+            all(opened.into_iter().map(|opened| with_found_sections(opened, problems)))?;
         Some(Self { protocols, campaigns, changes, unrelated, settings })
     }
 

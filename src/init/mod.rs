@@ -9,6 +9,7 @@ use minijinja::{Environment, UndefinedBehavior, Value};
 use serde_json::Value as Json;
 
 use crate::problem::{Problem, problem};
+use crate::words;
 
 /// A file of the draft: its path inside the folder, and its text.
 pub type File = (String, String);
@@ -24,14 +25,5 @@ pub(crate) fn filled(template: &str, data: &Json) -> Result<String, Problem> {
 }
 
 fn value(data: &Json) -> Value {
-    match data {
-        Json::Null => Value::from(()),
-        Json::Bool(truth) => Value::from(*truth),
-        Json::Number(number) => Value::from(number.as_f64()),
-        Json::String(text) => Value::from(text.as_str()),
-        Json::Array(items) => Value::from(items.iter().map(value).collect::<Vec<_>>()),
-        Json::Object(map) => {
-            Value::from_pairs(map.iter().map(|(key, item)| (key.clone(), value(item))))
-        }
-    }
+    words::value(data, value)
 }

@@ -88,26 +88,31 @@ pub fn condensed(quantity: &QuantityResult) -> Vec<OfLimit<'_>> {
     limits
 }
 
+/// Which of some limits a result belongs to.
+fn of<'l, 'a>(limits: &'l [OfLimit<'a>], one: &StatisticResult) -> Option<&'l OfLimit<'a>> {
+    limits.iter().find(|limit| limit.results.iter().any(|other| std::ptr::eq(*other, one)))
+}
+
+/// The results that belong to none of some limits.
+pub fn others<'a>(
+    quantity: &'a QuantityResult,
+    limits: &[OfLimit<'_>],
+) -> Vec<&'a StatisticResult> {
+    quantity.statistics.iter().filter(|one| of(limits, one).is_none()).collect()
+}
+
 /// The results that are printed each by itself.
 pub fn single(quantity: &QuantityResult) -> Vec<&StatisticResult> {
-    let condensed = condensed(quantity);
-    let among = |one: &StatisticResult| {
-        condensed.iter().any(|limit| limit.results.iter().any(|other| std::ptr::eq(*other, one)))
-    };
-    quantity.statistics.iter().filter(|one| !among(one)).collect()
+    others(quantity, &condensed(quantity))
 }
 
 /// The decisive result of each condensed limit, and all others.
 pub fn representatives(quantity: &QuantityResult) -> Vec<&StatisticResult> {
     let condensed = condensed(quantity);
-    let of = |one: &StatisticResult| {
-        condensed.iter().find(|limit| limit.results.iter().any(|other| std::ptr::eq(*other, one)))
+    let decides = |one: &&StatisticResult| {
+        of(&condensed, one).is_none_or(|limit| std::ptr::eq(limit.decisive(), *one))
     };
-    quantity
-        .statistics
-        .iter()
-        .filter(|one| of(one).is_none_or(|limit| std::ptr::eq(limit.decisive(), *one)))
-        .collect()
+    quantity.statistics.iter().filter(decides).collect()
 }
 
 #[cfg(test)]

@@ -17,6 +17,7 @@ use crate::hash::sha256_base64;
 use crate::problem::{Problem, Problems};
 use crate::report::document::{Document, Medium};
 use crate::report::visible::visible;
+use crate::words;
 
 const PAGE: &str = include_str!("../../templates/report.html");
 const CSS: &str = include_str!("../../templates/report.css");
@@ -91,15 +92,7 @@ fn policy() -> String {
 /// The data as values of the template engine; invisible characters are made visible.
 fn shown(value: &Json) -> Value {
     match value {
-        Json::Null => Value::from(()),
-        Json::Bool(truth) => Value::from(*truth),
-        Json::Number(number) => {
-            number.as_i64().map_or_else(|| Value::from(number.as_f64()), Value::from)
-        }
         Json::String(text) => Value::from(visible(text)),
-        Json::Array(items) => Value::from(items.iter().map(shown).collect::<Vec<_>>()),
-        Json::Object(map) => {
-            Value::from_pairs(map.iter().map(|(key, item)| (key.clone(), shown(item))))
-        }
+        other => words::value(other, shown),
     }
 }

@@ -101,6 +101,21 @@ pub fn texts(data: &Json) -> Json {
 
 /// A value with a code becomes its text; the parts of others stay as they are.
 fn filled(data: &Json) -> Value {
+    let inner = value(data, filled);
+    match data.get("code").and_then(Json::as_str) {
+        Some(code) => Value::from(
+            FILLER
+                .get_template(code)
+                .and_then(|text| text.render(inner))
+                // A test fills the text of every code.
+                .unwrap_or_else(|_| data.to_string()),
+        ),
+        None => inner,
+    }
+}
+
+/// Data as a value of the template engine, of parts that are made by `part`.
+pub fn value(data: &Json, part: fn(&Json) -> Value) -> Value {
     match data {
         Json::Null => Value::from(()),
         Json::Bool(truth) => Value::from(*truth),
@@ -108,20 +123,9 @@ fn filled(data: &Json) -> Value {
             number.as_i64().map_or_else(|| Value::from(number.as_f64()), Value::from)
         }
         Json::String(text) => Value::from(text.as_str()),
-        Json::Array(items) => Value::from(items.iter().map(filled).collect::<Vec<_>>()),
-        Json::Object(fields) => {
-            let inner =
-                Value::from_pairs(fields.iter().map(|(key, item)| (key.clone(), filled(item))));
-            match fields.get("code").and_then(Json::as_str) {
-                Some(code) => Value::from(
-                    FILLER
-                        .get_template(code)
-                        .and_then(|text| text.render(inner))
-                        // A test fills the text of every code.
-                        .unwrap_or_else(|_| data.to_string()),
-                ),
-                None => inner,
-            }
+        Json::Array(items) => Value::from(items.iter().map(part).collect::<Vec<_>>()),
+        Json::Object(map) => {
+            Value::from_pairs(map.iter().map(|(key, item)| (key.clone(), part(item))))
         }
     }
 }

@@ -170,6 +170,29 @@ pub enum SectionOperation {
     CycleRanges,
 }
 
+/// The parts of an expression of this kind, to be read or to be changed.
+macro_rules! parts {
+    ($kind:expr, $iter:ident, $as_deref:ident) => {
+        match $kind {
+            Kind::OverAxis(AxisOperation::Shifted(distance), inner) => vec![distance, inner],
+            Kind::Negative(inner)
+            | Kind::Not(inner)
+            | Kind::Mapped(inner, _)
+            | Kind::Filtered(inner, _)
+            | Kind::Level(_, inner)
+            | Kind::OverAxis(_, inner)
+            | Kind::OfSection(_, inner) => vec![inner],
+            Kind::Binary(_, left, right) => vec![left, right],
+            Kind::Call(_, arguments) => arguments.$iter().collect(),
+            Kind::Cases(arms, otherwise) => {
+                let arms = arms.$iter().flat_map(|(value, condition)| [value, condition]);
+                arms.chain(otherwise.$as_deref()).collect()
+            }
+            _ => Vec::new(),
+        }
+    };
+}
+
 impl Expr {
     /// A number, not of samples.
     pub fn number(kind: Kind, dimension: Dimension, span: &Origin) -> Self {
@@ -225,43 +248,12 @@ impl Expr {
 
     /// The parts that it is directly made of.
     pub fn parts(&self) -> Vec<&Expr> {
-        match &self.kind {
-            Kind::Negative(inner)
-            | Kind::Not(inner)
-            | Kind::Mapped(inner, _)
-            | Kind::Filtered(inner, _)
-            | Kind::Level(_, inner) => vec![inner],
-            Kind::OverAxis(AxisOperation::Shifted(distance), inner) => vec![distance, inner],
-            Kind::OverAxis(_, inner) | Kind::OfSection(_, inner) => vec![inner],
-            Kind::Binary(_, left, right) => vec![left, right],
-            Kind::Call(_, arguments) => arguments.iter().collect(),
-            Kind::Cases(arms, otherwise) => {
-                let arms = arms.iter().flat_map(|(value, condition)| [value, condition]);
-                arms.chain(otherwise.as_deref()).collect()
-            }
-            _ => Vec::new(),
-        }
+        parts!(&self.kind, iter, as_deref)
     }
 
     /// The same, to be changed.
     fn parts_mut(&mut self) -> Vec<&mut Expr> {
-        match &mut self.kind {
-            Kind::Negative(inner)
-            | Kind::Not(inner)
-            | Kind::Mapped(inner, _)
-            | Kind::Filtered(inner, _)
-            | Kind::Level(_, inner)
-            | Kind::OfSection(_, inner) => vec![inner],
-            Kind::OverAxis(AxisOperation::Shifted(distance), inner) => vec![distance, inner],
-            Kind::OverAxis(_, inner) => vec![inner],
-            Kind::Binary(_, left, right) => vec![left, right],
-            Kind::Call(_, arguments) => arguments.iter_mut().collect(),
-            Kind::Cases(arms, otherwise) => {
-                let arms = arms.iter_mut().flat_map(|(value, condition)| [value, condition]);
-                arms.chain(otherwise.as_deref_mut()).collect()
-            }
-            _ => Vec::new(),
-        }
+        parts!(&mut self.kind, iter_mut, as_deref_mut)
     }
 
     /// Puts `other` in the place of the frequencies of a spectrum.

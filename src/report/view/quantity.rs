@@ -98,10 +98,7 @@ fn sides_apart(quantity: &QuantityResult) -> bool {
 fn stated(quantity: &QuantityResult) -> Vec<&StatisticResult> {
     let by_group: Vec<_> =
         estimates::condensed(quantity).into_iter().filter(estimates::OfLimit::by_group).collect();
-    let among = |one: &StatisticResult| {
-        by_group.iter().any(|limit| limit.results.iter().any(|other| std::ptr::eq(*other, one)))
-    };
-    quantity.statistics.iter().filter(|one| !among(one)).collect()
+    estimates::others(quantity, &by_group)
 }
 
 fn statistics(quantity: &QuantityResult, rows: &str) -> Table {
