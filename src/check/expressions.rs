@@ -259,8 +259,7 @@ impl Checker<'_> {
     ) -> Option<Expr> {
         let base = self.expr(base, scope)?;
         let of = self.number_type(&base)?;
-        let (value, unit) = self.constant_phrase(exponent)?;
-        self.suits("exponent", unit == Dimension::ONE, "a plain number", unit, &exponent.place())?;
+        let value = self.constant_of("exponent", Dimension::ONE, "a plain number", exponent)?;
         let Some(dimension) = of.power(value) else {
             let problem = problem!("power", &span, "{} has no power of {value}", of.in_words());
             return self.refuse(problem.also(&base.span, of.in_words()).help(

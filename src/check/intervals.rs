@@ -152,8 +152,7 @@ impl Checker<'_> {
 
     /// A confidence level, from 0 to 1.
     pub fn confidence(&mut self, written: &Phrase) -> Option<f64> {
-        let (share, unit) = self.constant_phrase(written)?;
-        self.suits("confidence", unit == Dimension::ONE, "a share", unit, &written.place())?;
+        let share = self.constant_of("confidence", Dimension::ONE, "a share", written)?;
         if (LEAST_CONFIDENCE..1.0).contains(&share) {
             return Some(share);
         }

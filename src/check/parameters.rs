@@ -321,6 +321,19 @@ impl Checker<'_> {
         self.constant_phrase(&phrase)
     }
 
+    /// A constant of this dimension, which `needed` says.
+    pub fn constant_of(
+        &mut self,
+        what: &str,
+        dimension: Dimension,
+        needed: &str,
+        written: &Phrase,
+    ) -> Option<f64> {
+        let (value, found) = self.constant_phrase(written)?;
+        self.suits(what, found == dimension, needed, found, &written.place())?;
+        Some(value)
+    }
+
     /// As [`Self::constant`], for a part of a field.
     pub fn constant_phrase(&mut self, phrase: &Phrase) -> Option<(f64, Dimension)> {
         let expr = self.expr(phrase, &mut Scope::constant())?;
@@ -337,8 +350,7 @@ impl Checker<'_> {
     /// A percentile by a constant, as one by its number: `percentile level` with 95 % as `p95`.
     pub fn with_percentile(&mut self, phrase: &Phrase) -> Option<Phrase> {
         let Node::PercentileBy(of) = &phrase.node else { return Some(phrase.clone()) };
-        let (share, dimension) = self.constant_phrase(of)?;
-        self.suits("percentile", dimension == Dimension::ONE, "a share", dimension, &of.place())?;
+        let share = self.constant_of("percentile", Dimension::ONE, "a share", of)?;
         if (0.0..=1.0).contains(&share) {
             // As it is written: 99.85 % and not what its share becomes by rounding.
             return Some(phrase.with(Node::Percentile(significant(100.0 * share, 12))));

@@ -102,16 +102,13 @@ impl Checker<'_> {
 
     /// A constant above zero.
     fn size(&mut self, what: &str, dimension: Dimension, written: &Phrase) -> Option<f64> {
-        let (value, found) = self.constant_phrase(written)?;
-        let needed = dimension.in_words();
-        self.suits(what, found == dimension, &needed, found, &written.place())?;
+        let value = self.constant_of(what, dimension, &dimension.in_words(), written)?;
         self.positive(what, value, &written.place())?;
         Some(value)
     }
 
     fn overlap(&mut self, written: &Phrase) -> Option<f64> {
-        let (value, found) = self.constant_phrase(written)?;
-        self.suits("overlap", found == Dimension::ONE, "a share", found, &written.place())?;
+        let value = self.constant_of("overlap", Dimension::ONE, "a share", written)?;
         if (0.0..1.0).contains(&value) {
             return Some(value);
         }

@@ -19,10 +19,7 @@ pub struct Effects {
 
 impl Effects {
     pub fn run(self, console: &Console) -> Done {
-        let mut problems = Problems::default();
-        let catalogue = load_catalogue(&self.catalogue, &mut problems);
-        console.problems(&problems);
-        let Some(catalogue) = catalogue else { return Ok(Exit::Wrong) };
+        let catalogue = console.read(|problems| load_catalogue(&self.catalogue, problems))?;
         if self.text {
             console.print_file(&catalogue.source.text)
         } else {

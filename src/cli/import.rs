@@ -81,19 +81,16 @@ impl Import {
     }
 
     fn propose(&self, console: &Console) -> Done {
-        let mut problems = Problems::default();
-        let compiled = load(&self.protocol, &mut problems)
-            .and_then(|family| compile(family, &Overrides::new(), &mut problems));
         let named = Spanned::new(
             self.convention.clone(),
             Source::new("--convention", self.convention.clone()).whole(),
         );
-        let convention =
-            mapping::find_convention(&named, &Paths::allowed(Path::new(""), true)?, &mut problems);
-        console.problems(&problems);
-        let (Some(compiled), Some(convention)) = (compiled, convention) else {
-            return Ok(Exit::Wrong);
-        };
+        let anywhere = Paths::allowed(Path::new(""), true)?;
+        let (compiled, convention) = console.read(|problems| {
+            let compiled = load(&self.protocol, problems)
+                .and_then(|family| compile(family, &Overrides::new(), problems));
+            compiled.zip(mapping::find_convention(&named, &anywhere, problems))
+        })?;
         let paths: Vec<&Path> = self.inputs.iter().map(PathBuf::as_path).collect();
         self.out.as_ref().map_or(Ok(()), |out| check_file(out, &paths))?;
         let mut groups = groups(&paths).map_err(Problems)?;

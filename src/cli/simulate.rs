@@ -84,10 +84,7 @@ pub enum Integrator {
 impl Simulate {
     pub fn run(self, console: &Console) -> Done {
         start_jobs(self.jobs)?;
-        let mut problems = Problems::default();
-        let catalogue = load_catalogue(&self.catalogue, &mut problems);
-        console.problems(&problems);
-        let Some(catalogue) = catalogue else { return Ok(Exit::Wrong) };
+        let catalogue = console.read(|problems| load_catalogue(&self.catalogue, problems))?;
         let effects = effects::choose(&catalogue, &self.effects).map_err(Problems)?;
         let steps = steps(self.integrator, &self.step)?;
         match (&self.campaign, &self.vehicle) {
@@ -179,11 +176,7 @@ impl Simulate {
         }
         let (recorded, units) = chosen.recorded(campaign, section)?;
         let made = simulate(chosen.simulator(), catalogue, effects, section, Some(&recorded))?;
-        let unit = |channel: &str| {
-            let known = units.iter().find(|(name, _)| name == channel);
-            known.map_or_else(Unit::one, |(_, unit)| unit.clone())
-        };
-        record_file(format, &made, &unit)
+        record_file(format, &made, &|channel| Unit::of(channel, &units))
     }
 
     /// Simulates one vehicle on one track.
@@ -198,13 +191,12 @@ impl Simulate {
             return Ok(Exit::Wrong);
         };
         check_file(output, &[vehicle, track])?;
-        let mut problems = Problems::default();
-        let tree = problems
-            .value(read_text(vehicle, &vehicle.display().to_string()))
-            .and_then(|(source, _)| yaml::load(&source, &mut problems));
-        let speed = problems.value(speed(self.speed.as_deref()));
-        console.problems(&problems);
-        let Some((tree, speed)) = tree.zip(speed) else { return Ok(Exit::Wrong) };
+        let (tree, speed) = console.read(|problems| {
+            let tree = problems
+                .value(read_text(vehicle, &vehicle.display().to_string()))
+                .and_then(|(source, _)| yaml::load(&source, problems));
+            tree.zip(problems.value(speed(self.speed.as_deref())))
+        })?;
         let nowhere = Section::nowhere();
         if let Some(confined) = effects.iter().find(|applied| applied.confined.is_some()) {
             let says = format!(

@@ -73,10 +73,7 @@ pub fn diagnose(
         Some(first) => recorded(inputs.campaign, crate::data::RecordKind::Simulation, first)
             .map_err(Problems)?,
         None => {
-            return Err(Problems(vec![Problem::error(
-                "no-sections",
-                "the campaign has no sections",
-            )]));
+            return Err(Problem::error("no-sections", "the campaign has no sections").into());
         }
     };
     if let Some(simulator) = inputs.simulator {
@@ -84,8 +81,7 @@ pub fn diagnose(
             .iter_mut()
             .for_each(|(name, unit)| *unit = simulator.unit(name).unwrap_or_else(|| unit.clone()));
     }
-    let (sections, held) =
-        HeldOut::split(inputs.campaign, sections).map_err(|problem| Problems(vec![problem]))?;
+    let (sections, held) = HeldOut::split(inputs.campaign, sections)?;
     let Some(found) = find(inputs, sections, &mut problems) else { return Err(problems) };
     let (what, held) = match held {
         Some((held, sections)) => {
@@ -98,7 +94,6 @@ pub fn diagnose(
     let fitted: Vec<&str> = fitted.iter().map(String::as_str).collect();
     (inputs.trying)("the protocol");
     let quiet = |_: &str| {};
-    let one = |problem: Problem| Problems(vec![problem]);
     let settings = RunSettings { traces: 0 };
     let before = certify(compiled, inputs.campaign, settings, &quiet)?;
     // The records were read before by `find`: both must compare the same sections.
@@ -111,7 +106,7 @@ pub fn diagnose(
             section.section,
             words::or_nothing(section.reason.as_ref())
         );
-        return Err(one(Problem::error("file-unreadable", says)));
+        return Err(Problem::error("file-unreadable", says).into());
     }
     let mut after = None;
     let mut shrink = None;
@@ -139,8 +134,7 @@ pub fn diagnose(
     if !found.answer.chosen.members.is_empty() {
         (inputs.trying)("the protocol with the effects");
         let all = applied(&found, &found.answer.chosen.members);
-        held_records =
-            improved(&held, inputs.catalogue, inputs.simulator, &|_| all.clone()).map_err(one)?;
+        held_records = improved(&held, inputs.catalogue, inputs.simulator, &|_| all.clone())?;
         let made = with(&found, &unseen(inputs, &found)?, &held_records)?;
         let fit_before = of_sections(&before, &fitted);
         let noise =
@@ -161,8 +155,7 @@ pub fn diagnose(
         ));
         after = Some(made);
         records =
-            improved(&found.seen.sections, inputs.catalogue, inputs.simulator, &|_| all.clone())
-                .map_err(one)?;
+            improved(&found.seen.sections, inputs.catalogue, inputs.simulator, &|_| all.clone())?;
         added = effects_of_origin(&all, inputs.catalogue);
     }
     let protocol = (before.verdict, after.as_ref().map(|after: &Certification| after.verdict));
@@ -226,8 +219,7 @@ fn unseen(inputs: &Inputs<'_>, found: &Found) -> Result<Vec<Signals>, Problems> 
             .position(|fold| fold.contains(&at))
             .map_or_else(Vec::new, |fold| fitted[fold].clone())
     };
-    improved(&found.seen.sections, inputs.catalogue, inputs.simulator, &of)
-        .map_err(|problem| Problems(vec![problem]))
+    Ok(improved(&found.seen.sections, inputs.catalogue, inputs.simulator, &of)?)
 }
 
 /// The measured records with the declared white noise added once more; nothing where no noise is
@@ -347,13 +339,7 @@ fn evaluated<'a>(
     units: &Units,
     settings: RunSettings,
 ) -> Result<Certification, Problems> {
-    let unit = |name: &str| {
-        units
-            .iter()
-            .find(|(known, _)| known == name)
-            .map_or_else(Unit::one, |(_, unit)| unit.clone())
-    };
-    let copy = with_records(campaign, records, &unit)?;
+    let copy = with_records(campaign, records, &|name| Unit::of(name, units))?;
     certify(compiled, &copy, settings, &|_| {})
 }
 
@@ -392,14 +378,10 @@ fn write_records<'a>(
     (format, records, units): (Format, impl Iterator<Item = (&'a str, &'a Signals)>, &Units),
     made: Option<&Made<'_>>,
 ) -> Result<(), Problem> {
-    let unit = |name: &str| {
-        units
-            .iter()
-            .find(|(known, _)| known == name)
-            .map_or_else(Unit::one, |(_, unit)| unit.clone())
-    };
     let files: Result<Vec<(&str, Vec<u8>)>, Problem> = records
-        .map(|(section, signals)| Ok((section, record_file(format, signals, &unit)?)))
+        .map(|(section, signals)| {
+            Ok((section, record_file(format, signals, &|name| Unit::of(name, units))?))
+        })
         .collect();
     write_campaign(outputs, campaign, (format, files?.into_iter()), made)
 }

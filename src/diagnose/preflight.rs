@@ -58,7 +58,6 @@ pub fn preflight(
     settings: &Settings,
     simulator: Option<&dyn Simulator>,
 ) -> Result<Preflight, Problems> {
-    let one = |problem: Problem| Problems(vec![problem]);
     let mut problems = Problems::default();
     let unit = |channel: &str| simulator?.unit(channel);
     let mut seen = None;
@@ -91,7 +90,7 @@ pub fn preflight(
         candidates().any(|effect| simulated(&effect)),
         candidates().any(|one| simulated(&one) && reached(&one)),
     ) {
-        return Err(one(other_name(catalogue, name)));
+        return Err(other_name(catalogue, name).into());
     }
     let run = |settings: &[(String, f64)]| match simulator {
         Some(simulator) => simulator.run(&Task {
@@ -102,7 +101,7 @@ pub fn preflight(
         }),
         None => Ok(observed.simulated.clone()),
     };
-    let without = run(&[]).map_err(one)?;
+    let without = run(&[])?;
     let before = seen.of(0, &without, true);
     let each = |(effect, fit, channels): &(&Effect, &Fit, Vec<String>)| -> Result<Try, Problem> {
         let applied = applied(effect, fit, channels);
@@ -127,8 +126,7 @@ pub fn preflight(
         })
         .collect();
     let made: Vec<Result<Try, Problem>> = tries.par_iter().map(each).collect();
-    let mut made =
-        made.into_iter().collect::<Result<Vec<Try>, Problem>>().map_err(one)?.into_iter();
+    let mut made = made.into_iter().collect::<Result<Vec<Try>, Problem>>()?.into_iter();
     let moved = |(effect, fit): (&Effect, &Fit)| Moved {
         title: effect.title.clone(),
         size: size(fit, effect),

@@ -74,7 +74,7 @@ impl<'a> Bench<'a> {
         for side in [Side::Measured, Side::Simulated] {
             let kind = side.kind();
             if compiled.plan.reads(side) {
-                original.only_one(kind).map_err(|problem| Problems(vec![problem]))?;
+                original.only_one(kind)?;
                 let of = sections.iter().map(|section| {
                     let (signals, units, _) =
                         recorded(original, kind, section).map_err(Problems)?;
@@ -130,8 +130,8 @@ impl<'a> Bench<'a> {
         for (kind, at, signals) in changed {
             let records = &self.records[kind];
             let name = format!("{}/{}", records.kind.key(), self.sections[at].name());
-            let unit = |name: &str| unit_of(&records.of[at].1, name);
-            let frame = frame(&name, &signals, &unit).map_err(|problem| Problems(vec![problem]))?;
+            let unit = |name: &str| Unit::of(name, &records.of[at].1);
+            let frame = frame(&name, &signals, &unit)?;
             memory.records.insert(name, Arc::new(frame));
         }
         let text = self.text(&self.original.name);
@@ -234,7 +234,7 @@ impl<'a> Bench<'a> {
             let (signals, units) = &records.of[at];
             let new = changed.iter().find(|of| (of.0, of.1) == (kind, at)).map(|of| &of.2);
             let name = format!("{}/{}", records.kind.key(), self.sections[at].name());
-            let columns = columns(&name, new.unwrap_or(signals), &|name| unit_of(units, name))?;
+            let columns = columns(&name, new.unwrap_or(signals), &|name| Unit::of(name, units))?;
             let column = |(heading, values)| FileColumn {
                 heading,
                 values: Values::Numbers(values),
@@ -265,11 +265,6 @@ pub fn said(limits: &[Written], outcome: &run::Outcome) -> Said {
         State { reach: reach.reduce(f64::max), holds: holds.flatten() }
     });
     Said { limits: limits.collect(), findings: outcome.findings.iter().map(named).collect() }
-}
-
-fn unit_of(units: &[(String, Unit)], name: &str) -> Unit {
-    let known = units.iter().find(|(known, _)| known == name);
-    known.map_or_else(Unit::one, |(_, unit)| unit.clone())
 }
 
 /// A finding without its numbers: what it is, and where.

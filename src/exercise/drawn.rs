@@ -195,7 +195,7 @@ impl<'a> Drawing<'a> {
                 let of = columns.iter().find(|(_, _, channel)| channel.name == name);
                 of.map_or_else(Unit::one, |(_, unit, _)| unit.clone())
             };
-            let frame = frame(name, &signals, &unit).map_err(Problems::from)?;
+            let frame = frame(name, &signals, &unit)?;
             memory.records.insert(name.clone(), Arc::new(frame));
         }
         let mut problems = Problems::default();

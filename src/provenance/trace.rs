@@ -7,7 +7,7 @@ use super::carried::Carried;
 use crate::certify::Compiled;
 use crate::data::Campaigns;
 use crate::graph::{Node, Operation};
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problem, Problems, problem};
 use crate::report::number::significant;
 use crate::result::{FileHash, PairValue, QuantityResult, RecordName, RulePlace, StatisticResult};
 use crate::run::single::{Side, single};
@@ -46,7 +46,7 @@ pub fn trace(
     asked: Asked<'_>,
     campaigns: &[PathBuf],
 ) -> Result<Traced, Problems> {
-    let (quantity, pair) = find(carried, asked).map_err(|problem| Problems(vec![problem]))?;
+    let (quantity, pair) = find(carried, asked)?;
     let index = compiled.and_then(|compiled| {
         let index = compiled.plan.quantities.iter().position(|known| known.id == quantity.id)?;
         let signal = compiled.plan.quantities[index]
@@ -74,10 +74,7 @@ pub fn trace(
     if let Some((compiled, index)) = compiled.zip(index) {
         rule(&mut out, compiled, quantity, index.0);
         operations(&mut out, carried, compiled, index, asked.section).map_err(|says| {
-            Problems(vec![Problem::error(
-                "not-evaluated",
-                format!("the result does not match its protocol: {says}"),
-            )])
+            problem!("not-evaluated", "the result does not match its protocol: {says}")
         })?;
     } else {
         out += "\n";

@@ -36,8 +36,7 @@ const GRAPH: &str = "graph";
 ///
 /// `report-template`: the template cannot be filled.
 pub fn html(document: &Document, figures: &[(String, String)]) -> Result<String, Problems> {
-    filled(document, figures)
-        .map_err(|error| Problems(vec![Problem::error("report-template", error)]))
+    filled(document, figures).map_err(|error| Problem::error("report-template", error).into())
 }
 
 fn filled(document: &Document, figures: &[(String, String)]) -> Result<String, String> {

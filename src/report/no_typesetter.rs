@@ -17,5 +17,5 @@ pub fn typeset(
 ) -> Result<Pdf, Problems> {
     let says = "this program was built without the typesetter and cannot write a PDF";
     let help = "build it with the feature `typeset`, or use `--only html` or `--only results`";
-    Err(Problems(vec![Problem::error("no-typesetter", says).help(help)]))
+    Err(Problem::error("no-typesetter", says).help(help).into())
 }

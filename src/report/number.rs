@@ -25,10 +25,7 @@ pub fn decimals(unit: &str, values: impl IntoIterator<Item = f64>) -> usize {
         "N" | "kg" | "Pa" => 0,
         _ => 3,
     };
-    let largest = values
-        .into_iter()
-        .filter(|value| value.is_finite())
-        .fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    let largest = largest(values);
     if largest == 0.0 {
         return usual;
     }
@@ -36,13 +33,14 @@ pub fn decimals(unit: &str, values: impl IntoIterator<Item = f64>) -> usize {
     if needed > MOST_DECIMALS as f64 { usual } else { usual.max(needed as usize) }
 }
 
+fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
+    values.into_iter().filter(|value| value.is_finite()).map(f64::abs).fold(0.0, f64::max)
+}
+
 /// Decimals that show `digits` significant digits of the largest value, for values that are printed
 /// side by side.
 pub fn decimals_of(values: impl IntoIterator<Item = f64>, digits: usize) -> usize {
-    let largest = values
-        .into_iter()
-        .filter(|value| value.is_finite())
-        .fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    let largest = largest(values);
     if largest == 0.0 {
         0
     } else {

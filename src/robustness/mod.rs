@@ -11,7 +11,7 @@ mod synchronisation;
 use crate::certify::{Compiled, Opened, campaign_info, protocol_info};
 use crate::check::plan::{Decision, Plan};
 use crate::data::Campaigns;
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problem, Problems, problem};
 use crate::result::study::{Reduction, SelectionStudy, Study, StudyResult};
 use crate::result::{CampaignInfo, Reason};
 use crate::run::{Evaluated, Progress, Shifts, evaluate};
@@ -165,21 +165,20 @@ pub fn countable(compiled: &Compiled) -> Result<(), Problems> {
         Decision::Ordered(_) => "has several outcomes in order",
     };
     let name = overall.name.as_ref().map_or_else(String::new, |name| format!(" `{name}`"));
-    let problem = Problem::error(
+    let problem = problem!(
         "study-verdict",
-        format!("the overall verdict{name} {why}: a study can only count limits"),
+        &overall.span,
+        "the overall verdict{name} {why}: a study can only count limits"
     );
-    let problem = problem.at(&overall.span);
-    Err(Problems(vec![problem.help(
-        "write a variant of the protocol whose overall verdict is one by limits, and study that",
-    )]))
+    let help =
+        "write a variant of the protocol whose overall verdict is one by limits, and study that";
+    Err(problem.help(help).into())
 }
 
 fn too_few(reason: Reason) -> Problems {
-    Problems(vec![
-        Problem::error("too-few-sections", reason.text())
-            .help("provide more sections, or reduce the number per selection with `--take`"),
-    ])
+    Problem::error("too-few-sections", reason.text())
+        .help("provide more sections, or reduce the number per selection with `--take`")
+        .into()
 }
 
 /// The sections to select from, reduced if required.

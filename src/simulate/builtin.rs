@@ -312,13 +312,12 @@ pub fn single(
     else {
         return Err(problems);
     };
-    let all = |problem: Problem| Problems(vec![problem]);
-    let (vehicle, profile) = Machine { vehicle, new, worn }.with(settings).map_err(all)?;
+    let (vehicle, profile) = Machine { vehicle, new, worn }.with(settings)?;
     let (start, end) = (track.distance[0], track.distance[track.distance.len() - 1]);
     let half = vehicle.half_bogie_spacing + vehicle.half_wheelbase;
     let window = Window { from: start - shift, to: end - half - shift };
-    made(&Setup { vehicle: &vehicle, profile: &profile, track: &track, speed }, window, steps)
-        .map_err(all)
+    let setup = Setup { vehicle: &vehicle, profile: &profile, track: &track, speed };
+    Ok(made(&setup, window, steps)?)
 }
 
 fn track_of(campaign: &Campaign, section: &Cell) -> Result<TrackTable, Problem> {

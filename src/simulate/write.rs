@@ -30,7 +30,7 @@ pub fn with_records<'a>(
     let mut memory = Memory::default();
     for (section, signals) in records {
         let name = format!("{FOLDER}/{section}");
-        let frame = frame(&name, signals, units).map_err(|problem| Problems(vec![problem]))?;
+        let frame = frame(&name, signals, units)?;
         memory.records.insert(name, Arc::new(frame));
     }
     memory

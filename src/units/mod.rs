@@ -44,6 +44,12 @@ impl Unit {
         Self { text: "-".into(), factor: 1.0, dimension: Dimension::ONE }
     }
 
+    /// The unit that is listed beside a name; that of a dimensionless number if none is.
+    pub fn of(name: &str, units: &[(String, Self)]) -> Self {
+        let known = units.iter().find(|(known, _)| known == name);
+        known.map_or_else(Self::one, |(_, unit)| unit.clone())
+    }
+
     /// The SI unit of a dimension.
     pub fn si(dimension: Dimension) -> Self {
         if dimension == Dimension::ONE {

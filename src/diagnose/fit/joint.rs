@@ -13,7 +13,7 @@ use crate::diagnose::fit::fitter::{Fitted, Fitter, Member};
 use crate::diagnose::levels::joint::{ALIKE, CONVERGED, ROUNDS, TURNS};
 use crate::diagnose::linearise::candidate::blend;
 use crate::diagnose::linearise::metric::Metric;
-use crate::diagnose::linearise::path::{Closest, Path, closest};
+use crate::diagnose::linearise::path::{Closest, Path, closest, products};
 use crate::diagnose::linearise::whiten::{dot, less};
 
 /// A set of effects fitted together.
@@ -40,10 +40,7 @@ struct Seen {
 impl Seen {
     fn new(path: &Path, metric: &Metric, discrete: bool) -> Self {
         let nodes: Vec<Vec<f64>> = path.nodes.iter().map(|node| metric.apply(node)).collect();
-        let product =
-            |a: &Vec<f64>, b: &Vec<f64>| if a.is_empty() || b.is_empty() { 0.0 } else { dot(a, b) };
-        let lengths = nodes.iter().map(|node| product(node, node)).collect();
-        let products = nodes.windows(2).map(|pair| product(&pair[0], &pair[1])).collect();
+        let (lengths, products) = products(&nodes);
         Self { nodes, lengths, products, discrete }
     }
 

@@ -91,13 +91,19 @@ impl BySection {
     }
 }
 
+/// The squares of the lengths of nodes, and the product of each with the next; an empty node is no
+/// change.
+pub fn products(nodes: &[Vec<f64>]) -> (Vec<f64>, Vec<f64>) {
+    let product =
+        |a: &Vec<f64>, b: &Vec<f64>| if a.is_empty() || b.is_empty() { 0.0 } else { dot(a, b) };
+    let lengths = nodes.iter().map(|node| product(node, node));
+    (lengths.collect(), nodes.windows(2).map(|pair| product(&pair[0], &pair[1])).collect())
+}
+
 impl Path {
     /// From a candidate and its whitened nodes.
     pub fn new(of: &Candidate, nodes: Vec<Vec<f64>>) -> Self {
-        let product =
-            |a: &Vec<f64>, b: &Vec<f64>| if a.is_empty() || b.is_empty() { 0.0 } else { dot(a, b) };
-        let lengths: Vec<f64> = nodes.iter().map(|node| product(node, node)).collect();
-        let products: Vec<f64> = nodes.windows(2).map(|pair| product(&pair[0], &pair[1])).collect();
+        let (lengths, products) = products(&nodes);
         let step = |at: usize| (lengths[at] - 2.0 * products[at] + lengths[at + 1]).max(0.0).sqrt();
         let long = (0..products.len()).map(step).sum();
         let sizes = of.nodes.iter().map(|node| node.size).collect();

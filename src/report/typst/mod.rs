@@ -38,7 +38,7 @@ pub fn typeset(
     let printable = Printable::of(world::fonts());
     let mut files = Files::new();
     let mut value = serde_json::to_value(document.on(Medium::Paper))
-        .map_err(|error| single_problem(Problem::error("report-template", error.to_string())))?;
+        .map_err(|error| Problem::error("report-template", error.to_string()))?;
     printable.clean(&mut value);
     let mut drawn = serde_json::Map::new();
     for (at, (name, svg)) in figures.iter().enumerate() {
@@ -49,10 +49,8 @@ pub fn typeset(
     let mut attached = Vec::new();
     for attachment in attachments {
         if attachment.name.is_empty() || attachment.name.contains(['/', '\\']) {
-            return Err(single_problem(Problem::error(
-                "report-attachment",
-                format!("`{}` is not a file name", attachment.name),
-            )));
+            let says = format!("`{}` is not a file name", attachment.name);
+            return Err(Problem::error("report-attachment", says).into());
         }
         let path = format!("/attached/{}", attachment.name);
         files.add(&path, attachment.bytes.to_vec())?;
@@ -78,10 +76,8 @@ fn compile(files: &Files, ident: String, issued: Option<Timestamp>) -> Result<Pd
         Problems(errors.iter().map(|found| problem(found, files)).collect())
     };
     let document = compiled.output.map_err(|errors| refuse(&errors))?;
-    let standards =
-        PdfStandards::new(&[PdfStandard::A_3a, PdfStandard::Ua_1]).map_err(|error| {
-            single_problem(Problem::error("report-template", error.message().to_string()))
-        })?;
+    let standards = PdfStandards::new(&[PdfStandard::A_3a, PdfStandard::Ua_1])
+        .map_err(|error| Problem::error("report-template", error.message().to_string()))?;
     let options = PdfOptions {
         ident: Smart::Custom(ident),
         creator: Smart::Custom(Some(concat!("Fishplate ", env!("CARGO_PKG_VERSION")).to_owned())),
@@ -130,8 +126,4 @@ fn problem(found: &SourceDiagnostic, files: &Files) -> Problem {
         Some(hint) => made.help(hint.v.to_string()),
         None => made,
     }
-}
-
-fn single_problem(problem: Problem) -> Problems {
-    Problems(vec![problem])
 }

@@ -10,7 +10,7 @@ use typst::text::{Font, FontBook};
 use typst::utils::LazyHash;
 use typst::{Library, LibraryExt, World, WorldExt};
 
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problems, problem};
 
 /// The template of all documents.
 const REPORT: &str = include_str!("../../../templates/report.typ");
@@ -60,9 +60,7 @@ impl Files {
 
     /// Adds a file that templates can read under `path`.
     pub fn add(&mut self, path: &str, bytes: Vec<u8>) -> Result<(), Problems> {
-        let id = id(path).ok_or_else(|| {
-            Problems(vec![Problem::error("report-attachment", format!("`{path}` is not a path"))])
-        })?;
+        let id = id(path).ok_or_else(|| problem!("report-attachment", "`{path}` is not a path"))?;
         self.files.insert(id, Bytes::new(bytes));
         Ok(())
     }

@@ -187,15 +187,20 @@ impl Position<'_> {
         let failed = inputs.iter().filter_map(|input| input.as_ref().err());
         let reason = failed.into_iter().find(|reason| reason.is_of_samples())?.clone();
         let data = FindingData::RuleNotChecked { rule: self.rule.title.clone(), reason };
+        Some(self.found(record, data.into()))
+    }
+
+    /// What is found of the channel in this section.
+    fn found(&self, record: Option<String>, about: Occurrence) -> Finding {
         let first = Occurrence {
             channel: (!self.name.is_empty()).then(|| self.name.to_string()),
             section: Some(self.section.unit.name.clone()),
             campaign: self.section.unit.campaign_name.clone(),
             record,
-            ..data.into()
+            ..about
         };
         let consequence = consequence(self.rule.otherwise_at(self.name));
-        Some(Finding { consequence, ..Finding::note(&self.rule.name, first) })
+        Finding { consequence, ..Finding::note(&self.rule.name, first) }
     }
 
     /// The numbers that are compared, of those that have values.
@@ -248,24 +253,15 @@ impl Position<'_> {
         let value = numbers.as_ref().map(|(value, ..)| *value);
         let expected = numbers.as_ref().map(|(_, expected, ..)| *expected);
         let unit = numbers.as_ref().map(|(_, _, unit, ..)| unit.text.clone());
-        let first = Occurrence {
-            data: FindingData::Required {
-                rule: self.rule.title.clone(),
-                what: numbers.map(|(_, _, _, what, _)| what),
-                value,
-                expected,
-                unit: unit.clone().unwrap_or_default(),
-                required: self.requirement.words.clone(),
-            },
-            channel: (!self.name.is_empty()).then(|| self.name.to_string()),
-            section: Some(self.section.unit.name.clone()),
-            campaign: self.section.unit.campaign_name.clone(),
-            record,
+        let data = FindingData::Required {
+            rule: self.rule.title.clone(),
+            what: numbers.map(|(_, _, _, what, _)| what),
             value,
             expected,
-            unit,
+            unit: unit.clone().unwrap_or_default(),
+            required: self.requirement.words.clone(),
         };
-        let consequence = consequence(self.rule.otherwise_at(self.name));
-        Some(Finding { causes, consequence, ..Finding::note(&self.rule.name, first) })
+        let about = Occurrence { value, expected, unit, ..data.into() };
+        Some(Finding { causes, ..self.found(record, about) })
     }
 }

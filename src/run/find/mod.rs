@@ -13,7 +13,7 @@ use crate::data::campaign::Run;
 use crate::data::record::Wanted;
 use crate::data::{Campaign, Campaigns};
 use crate::graph::{Graph, Operation};
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problem, Problems, error};
 use crate::result::Reason;
 use crate::result::found::{FoundInRun, FoundSections, Rejected, Stretch};
 use crate::run::reduce::Progress;
@@ -267,9 +267,8 @@ fn in_run(
     rules: &Rules<'_>,
 ) -> Result<(Vec<Candidate>, FoundInRun), Problems> {
     let mut windows = Windows::open(plan, graph, campaign, run)?;
-    let reach = rules.reach().map_err(|reason| {
-        Problems(vec![Problem::error("find-length", reason.text()).at(&run.name.span)])
-    })?;
+    let reach =
+        rules.reach().map_err(|reason| error("find-length", reason.text(), &run.name.span))?;
     let piece = PIECE * (reach.before + reach.after);
     windows.fill(f64::NEG_INFINITY)?;
     let start = windows.start();
@@ -282,7 +281,7 @@ fn in_run(
         let from = at * step;
         windows.fill(from + piece + reach.after)?;
         if (windows.furthest() - start) / step > MOST_PLACES {
-            return Err(Problems(vec![too_many(plan, run, (start, windows.furthest()), step)]));
+            return Err(too_many(plan, run, (start, windows.furthest()), step).into());
         }
         windows.forget(from - reach.before);
         let signals = Signals::of(plan, graph, &windows, own_side(plan), rules.vehicle)?;
@@ -322,9 +321,8 @@ fn in_run(
             run.name.value
         );
         let problem = Problem::error("records-apart", says).at(&run.name.span);
-        return Err(Problems(vec![
-            problem.help("check the files of the run, and whether all count the same distance"),
-        ]));
+        let help = "check the files of the run, and whether all count the same distance";
+        return Err(problem.help(help).into());
     }
     let found = chosen.finish();
     let (tried, rejected, stretches) = rejections.told(|x| unit.from_si(x));

@@ -123,7 +123,7 @@ impl<'a> Signals<'a> {
             let known = Known::vehicle(vehicle);
             let failed = |reason: Reason| {
                 let says = format!("`{}`: {}", window.shown, reason.text());
-                Problems(vec![Problem::error("find-signal", says)])
+                Problems::from(Problem::error("find-signal", says))
             };
             let needed = needed(graph, &wanted, &known).map_err(failed)?;
             let opened = Opened::piece(plan, of.kind(), window.columns(), window.first_row);
