@@ -1,10 +1,8 @@
 //! The data of a campaign checked without its records.
 
-use crate::check::plan::Plan;
-use crate::data::{Campaign, Campaigns};
-use crate::problem::Problems;
 use crate::run::data_rules::{nothing_usable, stop_on_fault};
 use crate::run::find;
+use crate::run::prelude::*;
 use crate::run::sections::{Facts, requirements, units, wanted};
 use crate::run::values::SectionValues;
 

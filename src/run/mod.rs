@@ -24,6 +24,7 @@ mod estimate;
 pub mod find;
 mod limit;
 pub mod needs;
+mod prelude;
 mod record;
 mod reduce;
 mod sections;

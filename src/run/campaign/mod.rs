@@ -4,18 +4,13 @@
 pub mod several;
 pub mod single;
 
-use crate::check::plan::Plan;
-use crate::data::{Campaign, Campaigns};
-use crate::graph::Graph;
-use crate::problem::{Problem, Problems};
 use crate::result::study::Reduction;
-use crate::result::{
-    DataItem, DomainRange, DomainResult, FileHash, Finding, Remark, SectionResult, Trace,
-};
+use crate::result::{DataItem, DomainRange, DomainResult, SectionResult, Trace};
 use crate::run::data_rules::causes;
 use crate::run::describe::traces::{self, Kept, Signals};
 use crate::run::describe::{domain, not_asked, told};
 use crate::run::estimate::{extrapolation, used};
+use crate::run::prelude::*;
 use crate::run::reduce::held::{self, Holding};
 use crate::run::reduce::{Numbered, Prepared, Progress, Shard};
 use crate::run::sections::{Basis, units};

@@ -3,11 +3,9 @@
 
 use rayon::prelude::*;
 
-use crate::check::plan::Plan;
-use crate::data::Campaign;
-use crate::graph::{self, Graph};
-use crate::problem::Problems;
+use crate::graph;
 use crate::run::campaign::Reduced;
+use crate::run::prelude::*;
 use crate::run::record::{Columns, Counts, Keys, Numbers, SectionRecords, Sharing, Trial, Work};
 use crate::run::reduce::{Prepared, Progress, section};
 use crate::run::values::{SectionValues, Shifts};

@@ -3,11 +3,8 @@
 
 use std::collections::BTreeSet;
 
-use crate::check::plan::{self, Evaluation, Pairing, Plan, Records};
-use crate::data::Campaigns;
-use crate::graph::Graph;
-use crate::problem::{Problem, Problems};
-use crate::result::{FileHash, RecordName};
+use crate::check::plan;
+use crate::run::prelude::*;
 use crate::run::record::{Fault, NodeValue, SectionWork, Work};
 use crate::run::reduce::section::{original, records};
 use crate::run::reduce::{Prepared, wanted_of};

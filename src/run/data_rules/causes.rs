@@ -5,8 +5,8 @@ use std::collections::{BTreeSet, HashMap};
 
 use indexmap::IndexMap;
 
-use crate::check::plan::{Plan, Plausibility, Test, columns};
-use crate::result::{Finding, FindingData, Occurrence, Reason, SuspectedFactor};
+use crate::result::SuspectedFactor;
+use crate::run::prelude::*;
 use crate::units::Dimension;
 
 /// A factor between the value found and the expected value, with its most probable cause. Only

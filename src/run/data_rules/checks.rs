@@ -1,11 +1,8 @@
 //! Section checks of the protocol, on the track record or on the records of both sides.
 
 use super::plausibility::Questions;
-use crate::check::evaluate::flag;
-use crate::check::plan::{Check, Input, InputSide, Plan, Side};
-use crate::data::RecordKind;
-use crate::graph::{Graph, InputNode};
-use crate::result::{CheckResult, Datum, Reason, RecordName, Subject};
+use crate::result::{CheckResult, Datum};
+use crate::run::prelude::*;
 use crate::run::record::{Fault, SectionWork, Work};
 use crate::run::sections::Known;
 use crate::run::sections::requirements::met;

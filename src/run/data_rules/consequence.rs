@@ -4,9 +4,8 @@ use std::collections::HashMap;
 
 use indexmap::IndexMap;
 
-use crate::check::plan::{OnFault, Plan};
-use crate::problem::{Problem, Problems};
-use crate::result::{Consequence, Finding, Reason, Remark};
+use crate::result::Consequence;
+use crate::run::prelude::*;
 use crate::run::sections::Unit;
 use crate::run::sections::requirements::{Unchecked, of_check, unchecked};
 use crate::run::values::{SectionValues, margin_note};

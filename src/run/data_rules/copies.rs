@@ -5,9 +5,8 @@ use std::collections::BTreeMap;
 use rayon::slice::ParallelSliceMut;
 
 use super::consequence::consequence;
-use crate::check::plan::{Distinct, OnFault, Plan, Plausibility, Test};
-use crate::data::{RecordKind, WhichRecord};
-use crate::result::{Channels, Finding, FindingData, Occurrence, Reason};
+use crate::result::Channels;
+use crate::run::prelude::*;
 use crate::run::sections::Unit;
 use crate::run::values::SectionValues;
 use crate::words;

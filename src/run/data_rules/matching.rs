@@ -5,10 +5,8 @@
 use std::collections::HashMap;
 
 use super::consequence::consequence;
-use crate::check::plan::{Exchanged, Plan, Plausibility, Test};
-use crate::data::{RecordKind, WhichRecord};
 use crate::metrics::statistics::median;
-use crate::result::{Finding, FindingData, Occurrence, Reason};
+use crate::run::prelude::*;
 use crate::run::sections::Unit;
 use crate::run::values::{SectionValues, Shape};
 

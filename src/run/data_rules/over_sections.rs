@@ -5,10 +5,10 @@ use indexmap::IndexMap;
 
 use super::consequence::consequence;
 use crate::check::evaluate::words;
-use crate::check::plan::{Comparison, OverSections, Plan, Plausibility, Relation, Test};
 use crate::metrics::robust::{Estimate, level, slope};
 use crate::metrics::statistics::median;
-use crate::result::{Finding, FindingData, Occurrence, OfSections, Reason};
+use crate::result::OfSections;
+use crate::run::prelude::*;
 use crate::run::sections::Unit;
 use crate::run::values::{Pooled, SectionValues};
 

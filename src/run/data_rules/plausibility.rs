@@ -4,13 +4,10 @@ use std::collections::BTreeSet;
 
 use super::causes;
 use super::consequence::consequence;
-use crate::check::evaluate::{flag, number, words};
-use crate::check::plan::{
-    Comparison, Expr, InputSide, Looks, Plausibility, Relation, Requirement, Test,
-};
-use crate::graph::{Graph, InputNode, NodeId, PositionNodes};
+use crate::check::evaluate::words;
+use crate::graph::PositionNodes;
 use crate::metrics::percentile::{Method, percentile};
-use crate::result::{Finding, FindingData, Occurrence, Reason};
+use crate::run::prelude::*;
 use crate::run::record::SectionWork;
 use crate::run::sections::{Known, needed};
 use crate::run::values::{NodeValues, Pooled, Print, SectionValues, Shape, Sides};

@@ -3,14 +3,14 @@
 
 use indexmap::IndexMap;
 
-use crate::check::plan::{Coordinate, DatumKind, Domain, OnFault, Plan, Scalar};
 use crate::metrics::hull::{self, Nearest};
 use crate::metrics::statistics::ends;
 use crate::result::{
-    Beyond, Consequence, CoordinateRange, DomainRange, DomainResult, DomainSection, Finding,
-    FindingData, Occurrence, Reason, Scope, WantedPoint,
+    Beyond, Consequence, CoordinateRange, DomainRange, DomainResult, DomainSection, Scope,
+    WantedPoint,
 };
 use crate::run::limit::rule_place;
+use crate::run::prelude::*;
 use crate::run::sections::wanted::{Point, value, word};
 use crate::run::sections::{Facts, Unit};
 

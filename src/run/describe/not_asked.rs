@@ -3,9 +3,8 @@
 
 use indexmap::{IndexMap, IndexSet};
 
-use crate::check::evaluate::flag;
-use crate::check::plan::{Plan, Plausibility, Test};
-use crate::result::{Finding, FindingData, Occurrence, Reason, Sections};
+use crate::result::Sections;
+use crate::run::prelude::*;
 use crate::run::sections::{Facts, Known, Unit};
 
 /// Code of the finding about rules that were not asked. It does not change the verdict.

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use crate::check::plan::{EstimateKind, Plan, Report};
-use crate::result::{Count, Reason, Reported};
+use crate::result::{Count, Reported};
 use crate::run::estimate::{Group, Member, count_independent};
 use crate::run::limit::{Estimated, Judging, rule_place};
+use crate::run::prelude::*;
 use crate::run::sections::{Facts, Unit};
 use crate::run::values::Row;
 use crate::units;

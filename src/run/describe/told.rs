@@ -1,12 +1,9 @@
 //! Findings about the vehicle data: assumed units, and limits with factors that depend on these
 //! data; what is not assessed.
 
-use crate::check::plan::Plan;
-use crate::result::{
-    DataItem, Datum, Finding, FindingData, LimitFactor, Occurrence, QuantityResult, Reason, Remark,
-    StatisticResult,
-};
+use crate::result::{DataItem, Datum, LimitFactor, QuantityResult, StatisticResult};
 use crate::run::estimate::{Used, absent};
+use crate::run::prelude::*;
 use crate::run::sections::{Facts, Vehicle, is_dimensioned, vehicle_item};
 
 /// Code of the finding about units that the vehicle file does not state.

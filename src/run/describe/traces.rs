@@ -6,12 +6,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::check::plan::{self, Axis, Evaluation, Plan, Side};
-use crate::data::WhichRecord;
-use crate::graph::{Graph, NodeId};
+use crate::check::plan;
 use crate::metrics::statistics::ends;
-use crate::result::{Curve, Direction, QuantityResult, Reason, RecordName, Remark, Trace};
+use crate::result::{Curve, Direction, QuantityResult, Trace};
 use crate::run::data_rules::take_over;
+use crate::run::prelude::*;
 use crate::run::record::{NodeValue, Samples, SectionWork, Work};
 use crate::run::sections::{Extent, Unit as Section};
 use crate::run::values::{Row, SectionValues};

@@ -8,14 +8,11 @@ mod signals;
 mod table;
 mod window;
 
-use crate::check::plan::{Plan, Side};
 use crate::data::campaign::Run;
 use crate::data::record::Wanted;
-use crate::data::{Campaign, Campaigns};
-use crate::graph::{Graph, Operation};
-use crate::problem::{Problem, Problems, error};
-use crate::result::Reason;
+use crate::problem::error;
 use crate::result::found::{FoundInRun, FoundSections, Rejected, Stretch};
+use crate::run::prelude::*;
 use crate::run::reduce::Progress;
 use crate::run::sections::Facts;
 use place::{Chosen, Rules, Tried};

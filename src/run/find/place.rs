@@ -2,13 +2,10 @@
 //! several places that would overlap are taken.
 
 use super::signals::Signals;
-use crate::check::evaluate::{evaluate, flag, number};
-use crate::check::plan::{Datum, DatumKind, Expr, Find, FindCondition, Kind, Plan, Scalar, Zone};
+use crate::check::evaluate::evaluate;
 use crate::check::possible::{Possible, possible};
-use crate::data::Campaign;
 use crate::data::campaign::Run;
-use crate::graph::{Graph, InputNode};
-use crate::result::Reason;
+use crate::run::prelude::*;
 use crate::run::sections::{Extent, Facts, Known, Vehicle, of_run};
 
 /// How often a length that depends on data of the section is computed again from those of the new

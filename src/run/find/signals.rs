@@ -4,13 +4,9 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::Windows;
-use crate::check::plan::{InputSide, Plan, Side, StepSpec};
-use crate::data::RecordKind;
-use crate::graph::{Graph, InputNode, NodeId, Operation};
 use crate::metrics::percentile::Method;
 use crate::metrics::sampling::Traits;
-use crate::problem::{Problem, Problems};
-use crate::result::Reason;
+use crate::run::prelude::*;
 use crate::run::record::{NodeValue, Opened, Samples};
 use crate::run::sections::{Extent, Known, Vehicle, needed};
 

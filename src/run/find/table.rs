@@ -2,13 +2,11 @@
 //! run.
 
 use super::place::{Candidate, is_stated};
-use crate::check::plan::{Datum, DatumKind, Find, Plan, Scalar};
-use crate::data::Campaign;
 use crate::data::campaign::{OFFSET, RUN_COLUMN, Run};
 use crate::data::table::Table;
 use crate::data::write::table_csv;
-use crate::problem::{Problem, Problems, nearest};
-use crate::result::Reason;
+use crate::problem::nearest;
+use crate::run::prelude::*;
 use crate::run::sections::{computed_of_runs, of_run, trimmed};
 
 /// What the table of found sections is called in messages: it is in no file.

@@ -1,9 +1,8 @@
 //! The limit of one group of rows: its bound with factors, and the limits that it refers to.
 
-use crate::check::evaluate::{flag, number};
-use crate::check::plan::{EstimateKind, Limit, LimitName, Quantity};
-use crate::result::{Direction, Reason, Subject};
+use crate::result::Direction;
 use crate::run::estimate::{Closeness, Group, RowGroup};
+use crate::run::prelude::*;
 use crate::run::sections::{Known, Limits, Vehicle};
 
 pub fn applies(limit: &Limit, vehicle: &Vehicle) -> Result<bool, Reason> {

@@ -1,8 +1,7 @@
 //! Factors of limits that apply because of vehicle data, each with its reason.
 
-use crate::check::evaluate::{flag, number};
-use crate::check::plan::{Expr, Kind, Limit, Operator, Plan};
-use crate::result::{Datum, LimitFactor, Reason};
+use crate::result::{Datum, LimitFactor};
+use crate::run::prelude::*;
 use crate::run::sections::{Known, Vehicle, vehicle_item};
 
 /// The factors of a limit that apply because of vehicle data alone, each with its reason.

@@ -6,11 +6,10 @@ use indexmap::IndexMap;
 
 use super::pool::{Bounds, Pool, Pooled, PooledLimit, PooledQuantity, pool};
 use crate::catalog::Statistic;
-use crate::check::plan::{Keep, Plan, Scalar};
 use crate::metrics::moments::{Moment, Moments, Summed};
 use crate::metrics::reduction::{over, reduced};
-use crate::result::Reason;
 use crate::result::study::Reduction;
+use crate::run::prelude::*;
 use crate::run::sections::{Facts, Unit};
 use crate::run::values::SectionValues;
 

@@ -4,13 +4,13 @@ use super::against::{against, spans};
 use super::bound::{OfGroup, applies};
 use super::factors::factors;
 use crate::catalog::Statistic;
-use crate::check::plan::{Estimate, EstimateKind, Limit, Quantity, Report};
 use crate::metrics::statistics::{Divisor, mean, standard_deviation};
 use crate::result::{
-    Direction, EdgeResult, LimitNotMet, Outside, Reason, RegressionFigure, RulePlace, Sample,
-    Scope, StatisticResult, Subject, VehicleValue,
+    Direction, EdgeResult, LimitNotMet, Outside, RegressionFigure, RulePlace, Sample, Scope,
+    StatisticResult, VehicleValue,
 };
 use crate::run::estimate::{Group, Member, RowGroup, TooFew, count_independent};
+use crate::run::prelude::*;
 use crate::run::sections::{Facts, Known, Unit as Section, Vehicle};
 use crate::run::values::Row;
 use crate::source::Span;

@@ -6,13 +6,11 @@ use std::sync::Arc;
 
 use super::limits::{Judging, applying};
 use crate::catalog::Statistic;
-use crate::check::evaluate::number;
-use crate::check::plan::{
-    self, Decision, EstimateKind, Kind, MinimumOfGroups, OfGroup, Plan, Quantity, Taking,
-};
+use crate::check::plan;
 use crate::metrics::moments::{Moment, Moments};
-use crate::result::{Direction, Reason, Scope};
+use crate::result::{Direction, Scope};
 use crate::run::estimate::{Group, Member, RowGroup, Rows, used};
+use crate::run::prelude::*;
 use crate::run::sections::{Facts, Known, Unit, Vehicle};
 use crate::run::values::{Row, SectionValues};
 

@@ -5,9 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::limits::Judging;
-use crate::check::plan::{Chosen, Evaluation, Key, Limit, Pairing, Plan, Records, Side};
-use crate::result::{Reason, RecordName};
 use crate::run::estimate::{Group, Member, Table};
+use crate::run::prelude::*;
 
 impl Judging<'_> {
     /// Why limits that all simulations together meet do not decide the quantity: the first simulation

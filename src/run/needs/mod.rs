@@ -7,12 +7,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use indexmap::IndexSet;
 
-use crate::check::plan::{
-    Axis, Datum, DatumKind, Domain, InputSide, Kind, Optional, Plan, Quantity, Scalar, Side,
-};
 use crate::data::campaign::POINT_KEY;
 use crate::data::sites;
-use crate::graph::{Graph, InputNode, NodeId, QuantityNodes};
+use crate::graph::QuantityNodes;
+use crate::run::prelude::*;
 use crate::run::reduce::wanted_of;
 use crate::run::sections::units::STATE;
 use crate::run::sections::wanted::columns as wanted_columns;

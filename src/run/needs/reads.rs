@@ -1,9 +1,6 @@
 //! What the rules of a protocol read beside the nodes of the graph.
 
-use crate::check::plan::{
-    Estimate, EstimateKind, Evaluation, Expr, Independent, Input, Key, Limit, OfGroup, OfSection,
-    Plan, Quantity, Records, Report, Scope, Taking, Test, Valued,
-};
+use crate::run::prelude::*;
 
 /// The expressions of a rule, and the columns by which it groups sections.
 #[derive(Default)]

@@ -10,10 +10,7 @@ use super::opened::Opened;
 use super::signal::Samples;
 use super::state::NodeValue;
 use crate::catalog::Reducer;
-use crate::check::evaluate::number;
-use crate::check::plan::{AxisOperation, Mapping, Operator, Plan, StepSpec};
-use crate::graph::{Graph, NodeId, Operation};
-use crate::result::Reason;
+use crate::run::prelude::*;
 use crate::run::sections::{Known, chosen, needed};
 
 /// A value `x` becomes `factor * x + offset`, in SI.

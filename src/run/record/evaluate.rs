@@ -9,9 +9,7 @@ use super::opened::Opened;
 use super::signal::{Along, Cutter, Samples, Signal};
 use super::state::{NodeValue, State};
 use super::stretch::leading;
-use crate::check::plan::Plan;
-use crate::graph::{Graph, NodeId, Operation};
-use crate::result::Reason;
+use crate::run::prelude::*;
 use crate::run::sections::{Extent, Known};
 
 /// A record whose filters have run, to be cut at several places.

@@ -8,10 +8,9 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::signal::Signal;
 use crate::catalog::Reducer;
-use crate::check::evaluate::number;
-use crate::check::plan::{AxisOperation, Mapping, Operator, Plan, SectionOperation, StepSpec};
-use crate::graph::{Graph, Node, Operation};
+use crate::graph::Node;
 use crate::metrics::percentile::Method;
+use crate::run::prelude::*;
 use crate::run::sections::{Known, chosen};
 
 /// The number of what each node of a graph does, the same in every graph; `None` for nodes that

@@ -4,12 +4,11 @@ use std::sync::{Arc, Mutex};
 
 use super::memo::{Memo, Numbers};
 use super::signal::{Along, Rate, Samples};
-use crate::check::plan::{Axis, Plan};
 use crate::data::campaign::{Changed, ReadFile};
 use crate::data::checks::{Section, check_axis, whole};
-use crate::data::{Campaign, Record, RecordKind, WhichRecord, qualified};
-use crate::problem::Problem;
-use crate::result::{self, FileHash, Reason, RecordOf};
+use crate::data::{Record, qualified};
+use crate::result::{self, RecordOf};
+use crate::run::prelude::*;
 use crate::run::sections::{Extent, Unit};
 use crate::units::Dimension;
 

@@ -8,14 +8,11 @@ use std::sync::{Arc, Mutex};
 use super::memo::{Keys, Memo, locked};
 use super::opened::{Fault, Opened, Reading};
 use super::trial::Trial;
-use crate::check::plan::Plan;
+use crate::data::Record;
 use crate::data::campaign::{ReadFile, RunStretch};
 use crate::data::record::Wanted;
 use crate::data::table::Cell;
-use crate::data::{Campaign, Record, RecordKind, WhichRecord};
-use crate::graph::{Graph, Operation};
-use crate::problem::Problem;
-use crate::result::Reason;
+use crate::run::prelude::*;
 use crate::run::sections::{Extent, Unit};
 
 /// How much was read and filtered, and how much it would have been for each protocol by itself.

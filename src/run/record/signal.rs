@@ -4,8 +4,6 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::catalog::InWindow;
-use crate::check::evaluate::number;
-use crate::check::plan::{AxisOperation, Mapping, Operator, SectionOperation, StepSpec};
 use crate::check::values::Values;
 use crate::metrics::filter::Filter;
 use crate::metrics::percentile::Method;
@@ -13,7 +11,7 @@ use crate::metrics::rainflow::half_cycles;
 use crate::metrics::sampling::Traits;
 use crate::metrics::window::{Kind, Sliding};
 use crate::metrics::{along, resample};
-use crate::result::Reason;
+use crate::run::prelude::*;
 use crate::run::sections::Extent;
 
 /// The axis of the samples, and their time, in SI; both increase strictly.

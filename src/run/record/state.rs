@@ -9,12 +9,9 @@ use super::memo::{Computed, Keys, Memo};
 use super::opened::Opened;
 use super::signal::{Cutter, Samples, Signal, apply, arithmetic, choose, each, mapped};
 use crate::catalog::Reducer;
-use crate::check::evaluate::{flag, number};
-use crate::check::plan::{Plan, StepSpec, Type};
-use crate::graph::{Graph, NodeId, Operation};
 use crate::metrics::percentile::percentiles;
 use crate::metrics::sampling::Traits;
-use crate::result::{Reason, Subject};
+use crate::run::prelude::*;
 use crate::run::sections::{Extent, Known, chosen};
 
 /// Value of a requested node.

@@ -8,12 +8,10 @@ use super::memo::{Computed, Memo, locked};
 use super::opened::{Fault, Opened, Reading, Sampled, Stretched, clock};
 use super::signal::{Cutter, Signal};
 use super::state::State;
-use crate::check::plan::{AxisOperation, Kind, Plan, StepSpec};
+use crate::data::Record;
 use crate::data::campaign::ReadFile;
 use crate::data::checks::check_axis;
-use crate::data::{Record, RecordKind, WhichRecord};
-use crate::graph::{Graph, NodeId, Operation};
-use crate::result::Reason;
+use crate::run::prelude::*;
 use crate::run::sections::{Extent, Known};
 
 /// A record of the stretch with this number.

@@ -7,11 +7,8 @@ use std::sync::Arc;
 use super::opened::{Fault, Opened, Reading, Stretched, clock, unreadable};
 use super::section_records::Sharing;
 use super::stretch::{Soundness, Stretches};
-use crate::check::plan::{Check, Plan};
 use crate::data::record::Wanted;
-use crate::data::{Campaign, Campaigns, RecordKind, WhichRecord};
-use crate::graph::{Graph, InputNode, NodeId, Operation};
-use crate::result::{Reason, Subject};
+use crate::run::prelude::*;
 use crate::run::sections::columns::Present;
 use crate::run::sections::{Facts, Known, Stretch, Unit, needed};
 

@@ -7,10 +7,7 @@ use rayon::prelude::*;
 
 use super::Prepared;
 use super::section::{Active, active, of_quantities, records, rows};
-use crate::check::plan::{Evaluation, Plan, Side};
-use crate::data::WhichRecord;
-use crate::graph::{Graph, NodeId, Operation};
-use crate::result::Reason;
+use crate::run::prelude::*;
 use crate::run::record::{Calibrated, Held, Lines, NodeValue, Opened, SectionWork, Work};
 use crate::run::sections::needed;
 use crate::run::values::{Meetings, Original, RecordOfSide, SectionValues, Sides};

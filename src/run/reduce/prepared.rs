@@ -6,13 +6,10 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::section;
-use crate::check::plan::{Plan, Side};
 use crate::data::campaign::OFFSET;
-use crate::data::{Campaign, Campaigns};
-use crate::graph::Graph;
-use crate::problem::{Problem, Problems};
-use crate::result::{Reason, Remark, SectionOffset};
+use crate::result::SectionOffset;
 use crate::run::data_rules::stop_on_fault;
+use crate::run::prelude::*;
 use crate::run::record::{Soundness, Stretches, Work};
 use crate::run::sections::columns::{self, Present, Recorded};
 use crate::run::sections::{Basis, Facts, Unit, requirements, share_stretches, units, wanted};

@@ -3,12 +3,9 @@
 
 use std::collections::BTreeSet;
 
-use crate::check::evaluate::flag;
-use crate::check::plan::{Evaluation, Expr, InputSide, Quantity, Side};
-use crate::data::RecordKind;
-use crate::graph::{InputNode, NodeId, SignalNodes};
-use crate::result::{Reason, Subject};
+use crate::graph::SignalNodes;
 use crate::run::data_rules::{Questions, plausibility, record_checks, track_checks};
+use crate::run::prelude::*;
 use crate::run::record::{Fault, SectionWork, Work};
 use crate::run::sections::Unit;
 use crate::run::sections::columns::Present;

@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 use super::facts::Facts;
 use super::unit::Unit;
 use super::wanted::Point;
-use crate::check::plan::{Domain, Plan};
-use crate::result::{DataItem, Remark};
+use crate::result::DataItem;
+use crate::run::prelude::*;
 
 /// Data read before any record.
 #[derive(Clone, Debug, Serialize, Deserialize)]

@@ -7,14 +7,11 @@ use rayon::prelude::*;
 
 use super::facts::{Facts, needed};
 use super::unit::Unit;
-use crate::check::plan::{Plan, Quantity, Side};
 use crate::data::record::RecordSource;
-use crate::data::{Campaign, RecordKind, WhichRecord};
-use crate::graph::{
-    Graph, InputNode, NodeId, Operation, PositionNodes, QuantityNodes, SignalNodes,
-};
+use crate::graph::{PositionNodes, QuantityNodes, SignalNodes};
 use crate::problem::nearest;
-use crate::result::{Reason, RecordsOf, Remark};
+use crate::result::RecordsOf;
+use crate::run::prelude::*;
 
 impl Side {
     /// The kind of its records.

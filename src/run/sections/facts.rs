@@ -6,14 +6,11 @@ use std::collections::BTreeSet;
 use serde::{Deserialize, Serialize};
 
 use super::unit::Unit;
-use crate::check::evaluate::{evaluate, flag, words};
-use crate::check::plan::{Datum, DatumKind, Expr, LimitName, Plan, Scalar};
+use crate::check::evaluate::{evaluate, words};
 use crate::check::values::Values;
-use crate::data::Campaigns;
 use crate::data::campaign::VehicleState;
-use crate::graph::{Graph, NodeId, Operation};
-use crate::problem::{Problem, Problems};
-use crate::result::{DataItem, Reason, Subject};
+use crate::result::DataItem;
+use crate::run::prelude::*;
 use crate::units::number::Refused;
 use crate::units::{self, Dimension};
 use crate::yaml::Value;

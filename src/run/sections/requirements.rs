@@ -4,11 +4,10 @@ use indexmap::IndexMap;
 
 use super::facts::{Facts, Known, Vehicle, item};
 use super::unit::Unit;
-use crate::check::evaluate::{flag, number};
-use crate::check::plan::{Expr, Kind, Plan, SectionRules, Zone};
 use crate::check::possible::{Possible, possible};
 use crate::check::values::{Values, Watched};
-use crate::result::{CheckResult, DataItem, Datum, Reason, SELECTION, Sections, Subject};
+use crate::result::{CheckResult, DataItem, Datum, SELECTION, Sections};
+use crate::run::prelude::*;
 
 /// Relative tolerance for a minimum length, for the rounding of section ends written with two
 /// decimals.

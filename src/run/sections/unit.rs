@@ -6,11 +6,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::check::plan::{Plan, Scalar};
-use crate::data::Campaigns;
 use crate::data::campaign::RunStretch;
 use crate::data::table::Cell;
-use crate::result::{CheckResult, Reason};
+use crate::result::CheckResult;
+use crate::run::prelude::*;
 use crate::source::Span;
 
 /// Start and end of a section on the axis, SI.

@@ -4,13 +4,12 @@ use std::collections::HashMap;
 
 use super::facts::{Facts, item, scalar, told};
 use super::unit::Unit;
-use crate::check::plan::{Datum, DatumKind, Plan, Scalar};
 use crate::data::campaign::Run;
+use crate::data::qualified;
 use crate::data::sites::{originals, site_text, sites};
 use crate::data::table::{Cell, Table};
-use crate::data::{Campaign, Campaigns, qualified};
-use crate::problem::{Problem, Problems};
-use crate::result::{Reason, SectionResult};
+use crate::result::SectionResult;
+use crate::run::prelude::*;
 use crate::units::Unit as OfMeasure;
 
 /// The sections of all campaigns, one campaign after the other.

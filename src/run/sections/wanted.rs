@@ -4,12 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::facts::{Facts, Known, Vehicle, compute};
 use super::units::{Row, column_missing};
-use crate::check::evaluate::number;
-use crate::check::plan::{Domain, Expr, Kind, Plan, Scalar};
 use crate::data::table::{Cell, Table};
-use crate::data::{Campaign, Campaigns};
-use crate::problem::{Problem, Problems};
-use crate::result::{Reason, Subject};
+use crate::run::prelude::*;
 
 /// A point of wanted operation in one domain.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -7,12 +7,11 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use crate::catalog::Reducer;
-use crate::check::evaluate::{flag, number, words};
-use crate::check::plan::{AxisOperation, Expr, Kind, Side, Type};
+use crate::check::evaluate::words;
 use crate::metrics::percentile::Method;
 use crate::metrics::resample::{self, Located};
 use crate::metrics::sampling::Traits;
-use crate::result::Reason;
+use crate::run::prelude::*;
 use crate::run::record::{Along, Samples, Signal, apply, arithmetic, choose, each, mapped};
 use crate::run::sections::{Extent, Known};
 

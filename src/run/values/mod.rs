@@ -18,8 +18,8 @@ pub mod synchronisation;
 
 use serde::{Deserialize, Serialize};
 
-use crate::problem::Problem;
-use crate::result::{CheckResult, FileHash, Finding, Reason, RecordName};
+use crate::result::CheckResult;
+use crate::run::prelude::*;
 use crate::run::sections::Extent;
 
 pub use common::Meetings;

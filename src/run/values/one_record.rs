@@ -5,11 +5,8 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::SectionValues;
-use crate::check::plan::StepSpec;
-use crate::data::WhichRecord;
-use crate::graph::{Graph, NodeId, Operation};
 use crate::metrics::filter::{Band, Roots};
-use crate::result::{FileHash, Reason, Remark};
+use crate::run::prelude::*;
 use crate::run::record::{Fault, NodeValue, Opened, Samples, SectionWork, Work};
 use crate::run::sections::Extent;
 

@@ -7,13 +7,9 @@ use std::sync::Arc;
 use super::common::{Both, Meetings};
 use super::{NodeValues, RecordOfSide, Row};
 use crate::catalog::{Metric, Pair};
-use crate::check::evaluate::{flag, number};
-use crate::check::plan::{
-    Center, Chosen, Evaluation, Expr, InputSide, Kind, Pairing, Records, Side,
-};
-use crate::graph::{InputNode, Joint, NodeId, Operation, SignalNodes, ValueNodes};
+use crate::graph::{Joint, SignalNodes, ValueNodes};
 use crate::metrics::{pair, statistics};
-use crate::result::{Reason, RecordName};
+use crate::run::prelude::*;
 use crate::run::record::{NodeValue, Rate, Samples, SectionWork};
 use crate::run::sections::{Extent, Known};
 

@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 
 use super::{NodeValues, Offset};
-use crate::graph::{Graph, NodeId, Operation};
 use crate::metrics::synchronise::{self, Estimate, Search};
+use crate::run::prelude::*;
 use crate::run::record::{Held, NodeValue};
 use crate::run::sections::Unit;
 
