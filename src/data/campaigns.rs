@@ -1,8 +1,7 @@
 //! Several campaigns evaluated as one: a pool. A single campaign is a pool of one.
 
 use super::campaign::{Campaign, VehicleState};
-use crate::problem::{Problem, Problems, error, problem};
-use crate::source::Spanned;
+use crate::data::prelude::*;
 
 /// The campaigns of a run, in the order given; at least one.
 #[derive(Clone, Copy, Debug)]

@@ -6,9 +6,7 @@
 use std::ops::Range;
 
 use super::faults::Faults;
-use crate::problem::{Problem, error, problem};
-use crate::source::{Source, Span};
-use crate::units::{Dimension, Unit};
+use crate::data::prelude::*;
 
 /// A cell without surrounding blanks.
 #[derive(Clone, Debug, PartialEq)]

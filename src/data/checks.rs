@@ -4,8 +4,7 @@
 use std::ops::Range;
 
 use super::record::{Column, Record};
-use crate::problem::{Problem, error, problem};
-use crate::source::Span;
+use crate::data::prelude::*;
 
 /// A step of the clock longer than the median by this factor is a gap.
 const GAP: f64 = 1.5;

@@ -9,8 +9,7 @@ use super::record::{Format, read_raw};
 use super::text::read_any;
 use super::write::{Entry, Outputs, campaign_yaml, campaign_yaml_with, in_format, table_csv};
 use super::{Campaign, RecordKind};
-use crate::problem::Problem;
-use crate::yaml::{Node, Value};
+use crate::data::prelude::*;
 
 /// The key of `campaign.yaml` that names the table of converted records.
 const KEY: &str = "records_converted";

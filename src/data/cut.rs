@@ -7,10 +7,8 @@ use super::record::{Column, Format, Record, Wanted};
 use super::table::{Cell, Table};
 use super::write::{Entry, FileColumn, Outputs, Values, campaign_yaml_with, in_format, table_csv};
 use super::{Campaign, RecordKind};
-use crate::problem::{Problem, error, problem};
-use crate::units::Dimension;
+use crate::data::prelude::*;
 use crate::units::number::significant;
-use crate::yaml::{Node, Value};
 
 /// The key of `campaign.yaml` that names the table of cut records.
 const KEY: &str = "records_cut";

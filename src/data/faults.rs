@@ -1,7 +1,7 @@
 //! The first problems of a file and the number of further ones: a file in a wrong format has one in
 //! every row.
 
-use crate::problem::{Problem, Problems, problem};
+use crate::data::prelude::*;
 
 /// Maximum number of problems shown per file.
 const SHOWN: usize = 5;

@@ -5,9 +5,8 @@ use std::path::Path;
 use super::folder::Folder;
 use super::hash::Hasher;
 use super::text::unreadable;
+use crate::data::prelude::*;
 use crate::disk::{self, Kind};
-use crate::problem::Problem;
-use crate::source::Source;
 
 /// SHA-256 and size of a file named by its path inside a campaign; `None` if there is no such file.
 ///

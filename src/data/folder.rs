@@ -7,9 +7,8 @@ use std::sync::Arc;
 use super::place::CampaignPath;
 use super::record::Frame;
 use super::text::{read_any, read_small, text_of, unreadable};
-use crate::disk;
-use crate::problem::{Problem, error, nearest, problem};
-use crate::source::{Source, Span};
+use crate::data::prelude::*;
+use crate::problem::nearest;
 
 /// Small files and records of a campaign that are in memory, by their paths inside it. A record has
 /// no ending: `measurement/S01`.

@@ -1,8 +1,7 @@
 //! The block `report` of `campaign.yaml`: identification of the report, customer, test item,
 //! equipment and dates.
 
-use crate::problem::{Problem, Problems, problem};
-use crate::yaml::{Key, Node, Value};
+use crate::data::prelude::*;
 
 /// The key of the block.
 pub const REPORT_KEY: &str = "report";

@@ -37,6 +37,7 @@ mod format;
 pub mod identification;
 pub mod origin;
 mod place;
+mod prelude;
 pub mod record;
 pub mod sites;
 pub mod table;

@@ -37,9 +37,7 @@ use std::path::Path;
 use super::cells::{self, Heading};
 use super::faults::Faults;
 use super::text::empty;
-use crate::problem::Problem;
-use crate::source::{Source, Span};
-use crate::units::{Dimension, Unit};
+use crate::data::prelude::*;
 
 /// A column requested by the caller.
 #[derive(Clone, Debug, PartialEq)]

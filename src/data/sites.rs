@@ -4,7 +4,7 @@
 use std::collections::HashMap;
 
 use super::table::{Cell, Table};
-use crate::problem::{Problem, Problems, problem};
+use crate::data::prelude::*;
 
 /// Columns of the section table that define the site of a section.
 pub const SITE: &str = "site";

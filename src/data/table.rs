@@ -5,9 +5,7 @@ use std::sync::Arc;
 
 use super::cells::{self, Heading};
 use super::faults::Faults;
-use crate::problem::{Problem, Problems, error, problem};
-use crate::source::{Source, Span, Spanned};
-use crate::units::Dimension;
+use crate::data::prelude::*;
 
 /// A table with the same number of cells in every row, and a name per row if it was read with a
 /// key.

@@ -6,9 +6,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::hash::sha256;
-use crate::disk;
-use crate::problem::{Problem, problem};
-use crate::source::{Source, Span};
+use crate::data::prelude::*;
 
 /// Maximum size of a YAML file or table in bytes; typical ones have a few thousand.
 const SMALL: u64 = 16 << 20;

@@ -2,8 +2,7 @@
 
 use super::layout::Layout;
 use crate::data::cells::name_and_unit_text;
-use crate::source::Span;
-use crate::yaml::{Key, Node, Value};
+use crate::data::prelude::*;
 
 /// Something that `campaign.yaml` says beyond the layout.
 #[derive(Clone, Debug, PartialEq)]

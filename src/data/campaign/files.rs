@@ -7,9 +7,8 @@ use indexmap::IndexSet;
 use super::members::RecordKind;
 use super::runs::Run;
 use super::{CAMPAIGN_FILE, Campaign};
+use crate::data::prelude::*;
 use crate::data::{place::CampaignPath, text::unreadable};
-use crate::disk;
-use crate::problem::Problem;
 
 /// What a campaign is read from: absolute paths.
 #[derive(Clone, Debug)]

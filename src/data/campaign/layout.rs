@@ -6,10 +6,8 @@ use super::opening::{Opening, Reader};
 use super::runs::{Run, runs};
 use super::uncertainty::{Uncertainty, uncertainties};
 use super::{Parameter, VehicleState};
+use crate::data::prelude::*;
 use crate::data::{identification::at_the_margin, origin::Origin, table::Table};
-use crate::problem::{error, problem};
-use crate::source::Spanned;
-use crate::yaml::{FromNode, Key, Node, Value, fields};
 
 /// The column of the section table that names the sections; without it, the first column does.
 const SECTION_KEY: &str = "section";

@@ -7,15 +7,13 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use serde::{Deserialize, Serialize};
 
 use super::opening::Reader;
+use crate::data::prelude::*;
 use crate::data::{
     folder::Folder,
     place::CampaignPath,
     record::{Format, Held, Known, Stored},
 };
-use crate::problem::{Problem, problem};
-use crate::source::{Span, Spanned};
 use crate::store;
-use crate::yaml::{FromNode, Key, Node, Value};
 
 /// The kinds of records that a campaign has, each in a folder of its own with a file per section.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]

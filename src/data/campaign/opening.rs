@@ -2,10 +2,9 @@
 
 use std::sync::Arc;
 
+use crate::data::prelude::*;
 use crate::data::{folder::Folder, place::CampaignPath, table::Table};
-use crate::problem::Problems;
-use crate::source::{Source, Span, Spanned};
-use crate::yaml::{self, FromNode, Key, Node};
+use crate::yaml;
 
 /// A file that was read, and its fingerprint.
 #[derive(Clone, Debug, PartialEq)]

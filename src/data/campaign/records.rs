@@ -11,6 +11,7 @@ use super::layout::Edited;
 use super::members::{self, RecordFolder, RecordKind, WhichRecord};
 use super::opening::{Changed, ReadFile};
 use super::runs::RunStretch;
+use crate::data::prelude::*;
 use crate::data::{
     folder::{check_file_name, names_in},
     place::CampaignPath,
@@ -18,10 +19,7 @@ use crate::data::{
     table::Cell,
     text::{other_format, unreadable},
 };
-use crate::disk;
-use crate::problem::{Problem, error, nearest, problem};
-use crate::source::{Span, Spanned};
-use crate::units::Dimension;
+use crate::problem::nearest;
 
 /// Most comparisons of names with names that are made to suggest what was meant for missing records
 /// of a campaign.

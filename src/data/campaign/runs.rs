@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::Campaign;
 use super::members::RecordKind;
 use super::opening::{Opening, Reader};
+use crate::data::prelude::*;
 use crate::data::{
     cells::name_and_unit_text,
     folder::{check_file_name, names_in},
@@ -13,11 +14,8 @@ use crate::data::{
     table::{Cell, Table},
     text::unreadable,
 };
-use crate::disk;
-use crate::problem::{Problem, Problems, error, problem};
-use crate::source::{Span, Spanned};
 use crate::store;
-use crate::yaml::{FromNode, Key, Node, Value, Words, fields};
+use crate::yaml::Words;
 
 /// The key of the runs in `campaign.yaml`.
 pub const RUNS: &str = "runs";

@@ -2,8 +2,7 @@
 
 use super::facts::Fact;
 use super::uncertainty::Uncertainty;
-use crate::problem::{Problems, problem};
-use crate::units::Unit;
+use crate::data::prelude::*;
 
 /// The map of `campaign.yaml` with what a diagnosis tolerates.
 const TOLERANCES: &str = "declared_tolerances";

@@ -1,10 +1,9 @@
 //! Uncertainties of the channels, as `campaign.yaml` states them: the one source of all that
 //! computes with them.
 
-use crate::problem::{Problem, error, problem};
-use crate::source::{Span, Spanned};
-use crate::units::{Unit, number};
-use crate::yaml::{FromNode, Key, Node, OneOrMore, Reader, fields, span_of_value};
+use crate::data::prelude::*;
+use crate::units::number;
+use crate::yaml::{OneOrMore, Reader, span_of_value};
 
 /// The key in `campaign.yaml`.
 pub const UNCERTAINTY: &str = "uncertainty";

@@ -1,9 +1,8 @@
 //! Slow parsing of an irregular row, with a description of its fault.
 
 use super::Column;
+use crate::data::prelude::*;
 use crate::data::{cells, faults::Faults};
-use crate::problem::{error, problem};
-use crate::source::{Source, Span};
 
 /// A line of the file without its line break.
 pub struct Line<'a> {

@@ -4,13 +4,12 @@ use std::io::BufRead;
 use std::path::Path;
 
 use super::Wanted;
+use crate::data::prelude::*;
 use crate::data::{
     cells::{self, Heading},
     text::open_text,
 };
-use crate::problem::{Problem, error, nearest, problem};
-use crate::source::Source;
-use crate::units::Unit;
+use crate::problem::nearest;
 
 /// One problem for all columns with the same fault: the header is shown once.
 pub fn alike(wrong: Vec<(&Heading, Problem)>) -> Vec<Problem> {

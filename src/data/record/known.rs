@@ -9,8 +9,7 @@ use super::held::Held;
 use super::recent::locked;
 use super::stored::{Stored, refused};
 use crate::data::place::CampaignPath;
-use crate::problem::Problem;
-use crate::source::Span;
+use crate::data::prelude::*;
 use crate::store::{Object, Refused};
 
 /// Known once for all that share it; computed by the first who asks while the others wait.

@@ -12,14 +12,12 @@ use parquet::arrow::parquet_to_arrow_schema;
 use parquet::file::metadata::{ColumnChunkMetaData, ParquetMetaData, ParquetMetaDataReader};
 
 use super::guard;
+use crate::data::prelude::*;
 use crate::data::{
     cells::{Heading, duplicates, name_and_unit, shortened},
     checksum::{self, Sums},
     write::Digits,
 };
-use crate::problem::{Problem, error, problem};
-use crate::source::{Source, Span};
-use crate::units::Unit;
 
 /// Key of the metadata of a field that holds its unit.
 const UNIT_KEY: &str = "unit";

@@ -12,13 +12,12 @@ use super::columnar::{append, no_rows, numbers, value_at, wrong};
 use super::layout::{headings_of, not_numbers};
 use super::stretch::{Run, Stretch, axis_of, values};
 use super::{Column, Wanted, find_columns};
+use crate::data::prelude::*;
 use crate::data::{
     cells::{Heading, names},
     faults::Faults,
     hash::Hasher,
 };
-use crate::problem::{Problem, problem};
-use crate::source::{Source, Span};
 
 /// Numbers hashed at a time where they do not lie as 64-bit numbers in memory; it does not change
 /// the result.

@@ -11,9 +11,8 @@ use super::memory::Frame;
 use super::stored::Stored;
 use super::stretch::{Block, Run};
 use super::{Column, Format, Record, Wanted, text};
+use crate::data::prelude::*;
 use crate::data::{cells::Heading, place::CampaignPath};
-use crate::problem::{Problem, problem};
-use crate::source::Span;
 
 /// A record that can be read.
 #[derive(Clone, Debug)]

@@ -1,8 +1,7 @@
 //! Records in an object store, as Parquet.
 
 use super::held::Held;
-use crate::problem::{Problem, error};
-use crate::source::Span;
+use crate::data::prelude::*;
 use crate::store::{Object, Refused};
 
 /// An object, and where its parts are kept that are read again. Of an object, the footer and the

@@ -8,15 +8,13 @@ use super::columnar::MAGIC;
 use super::known::{Index, Known, KnownFile, Mark};
 use super::stretch::{Block, Run, Stretch, axis_of, values};
 use super::{Column, Wanted, fault, find_columns, header_fault, listed_headings, rows};
+use crate::data::prelude::*;
 use crate::data::{
     cells::{self, Heading, names},
     faults::Faults,
     hash::Hasher,
     text::{self, LONGEST_LINE, decode_from, long_line, open_text, read_line_of, unreadable},
 };
-use crate::disk;
-use crate::problem::{Problem, problem};
-use crate::source::{Source, Span};
 
 /// Bytes of text read at a time, and so what is read at least for a stretch: about 1200 rows of 24
 /// channels, 6 s at 200 Hz. Larger blocks are not read faster.

@@ -5,9 +5,7 @@ use std::fmt::Write;
 use super::columnar::{FileColumn, Values, parquet, rows_of};
 use super::digits::Digits;
 use crate::data::format::Format;
-use crate::problem::{Problem, problem};
-use crate::units::Unit;
-use crate::yaml::{Node, Value};
+use crate::data::prelude::*;
 
 /// A column to be written: values in SI units, its unit, and its number of decimals.
 #[derive(Clone, Copy, Debug)]

@@ -23,6 +23,7 @@ use open::{Opened, Store};
 pub use runs::{stream, stretch};
 
 use super::{Column, Known, Run, Wanted, find_columns, guard};
+use crate::data::prelude::*;
 use crate::data::{
     cells::Heading,
     faults::Faults,
@@ -30,9 +31,6 @@ use crate::data::{
     text::{LARGEST_RECORD, read_file},
     write::{FileColumn, Values},
 };
-use crate::problem::{Problem, problem};
-use crate::source::{Source, Span};
-use crate::units::Unit;
 
 /// First and last bytes of each Parquet file.
 pub const MAGIC: &[u8; 4] = b"PAR1";

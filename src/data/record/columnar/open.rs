@@ -10,6 +10,7 @@ use bytes::Bytes;
 use parquet::basic::Compression;
 
 use super::{Column, MAGIC, Wanted, find_columns, guard};
+use crate::data::prelude::*;
 use crate::data::{
     cells::shortened,
     faults::Faults,
@@ -18,9 +19,6 @@ use crate::data::{
     record::stored::Stored,
     text::{LARGEST_RECORD, empty, plain_size, unreadable},
 };
-use crate::disk;
-use crate::problem::{Problem, problem};
-use crate::source::Source;
 
 /// Maximum size of a footer in bytes: a hundred channels in a thousand row groups take 10 MB.
 const LARGEST_FOOTER: u64 = 32 << 20;

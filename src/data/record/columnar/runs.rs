@@ -8,6 +8,7 @@ use parquet::file::statistics::Statistics;
 
 use super::open::{At, Opened, Store, footer};
 use super::{Column, no_rows};
+use crate::data::prelude::*;
 use crate::data::{
     cells::names,
     faults::Faults,
@@ -20,8 +21,6 @@ use crate::data::{
     record::stretch::{Block, Run, Stretch, axis_of, values},
     text::unreadable,
 };
-use crate::disk;
-use crate::problem::Problem;
 
 /// Calls `each` with the wanted columns, batch by batch in the order of the file.
 pub fn stream(
