@@ -5,7 +5,7 @@ use crate::units::Unit;
 use crate::units::number::significant;
 
 /// A channel of a file with its figures, in the unit of the file.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Look {
     pub name: String,
     /// As the file has it; empty if it has none.

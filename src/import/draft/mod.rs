@@ -6,18 +6,22 @@
 //! |---|---|
 //! | `mod` | groups of files with the same channels, the pattern of their names |
 //! | `look` | what is in a channel: unit, rate, range, mean |
+//! | `alike` | both sides beside each other: order of digits, signs, direction, shift |
+//! | `names` | what the words of a name say |
 //! | `guess` | which channel it may be, by name and by content |
 //! | `text` | the text of the draft |
 
+mod alike;
 mod guess;
 mod look;
+mod names;
 mod text;
 
 use std::path::Path;
 
 use super::mapping::Convention;
 use crate::data::RecordKind;
-use crate::foreign::{self, File, Options, Table};
+use crate::foreign::{self, Channel, File, Options, Table};
 use crate::problem::Problem;
 use crate::run::needs::Needs;
 use crate::yaml::Words;
@@ -43,6 +47,18 @@ pub struct Group {
     pub looks: Vec<Look>,
 }
 
+impl Group {
+    /// The channels that were looked at, in the same order.
+    fn channels(&self) -> impl Iterator<Item = &Channel> {
+        used(&self.first).take(self.tables).flat_map(|table| &table.channels)
+    }
+}
+
+/// The tables of a file that have rows.
+fn used(file: &File) -> impl Iterator<Item = &Table> {
+    file.tables.iter().filter(|table| !table.channels.is_empty() && table.rows > 1)
+}
+
 /// What the draft is made with.
 #[derive(Debug)]
 pub struct With<'a> {
@@ -61,7 +77,7 @@ pub fn groups(paths: &[&Path]) -> Result<Vec<Group>, Vec<Problem>> {
     for path in paths {
         match foreign::outline(path, &path.display().to_string(), &Options::default()) {
             Ok(file) => {
-                let key = key(&file);
+                let key = key(&file, side(&path.display().to_string()));
                 match by_channels.iter_mut().find(|(known, _)| *known == key) {
                     Some((_, same)) => same.push(path),
                     None => by_channels.push((key, vec![path])),
@@ -112,12 +128,13 @@ pub fn relative_to(groups: &mut [Group], folder: &Path) {
     groups.iter_mut().for_each(|group| group.files = from_folder(&group.files, folder));
 }
 
-/// Format and channels of a file; tables with the same channels count once.
-fn key(file: &File) -> Vec<String> {
+/// Side, format and channels of a file; tables with the same channels count once.
+fn key(file: &File, side: Option<RecordKind>) -> Vec<String> {
     let mut tables: Vec<String> =
         file.tables.iter().filter(|table| !table.channels.is_empty()).map(names).collect();
     tables.dedup();
-    std::iter::once(file.format.word().to_string()).chain(tables).collect()
+    let side = side.map_or("", RecordKind::key);
+    [side, file.format.word()].into_iter().map(str::to_owned).chain(tables).collect()
 }
 
 fn names(table: &Table) -> String {
@@ -128,8 +145,7 @@ fn group(paths: &[&Path]) -> Result<Group, Vec<Problem>> {
     let first = foreign::read(paths[0], &paths[0].display().to_string(), &Options::default())?;
     let shown: Vec<String> =
         paths.iter().map(|path| path.display().to_string().replace('\\', "/")).collect();
-    let used: Vec<&Table> =
-        first.tables.iter().filter(|table| !table.channels.is_empty() && table.rows > 1).collect();
+    let used: Vec<&Table> = used(&first).collect();
     let alike = used.len() > 1 && used.iter().all(|table| names(table) == names(used[0]));
     let (mut table, mut tables) = (None, used.len());
     let (files, sections) = match (&shown[..], alike) {

@@ -2,11 +2,14 @@
 
 use std::path::{Component, Path};
 
-use super::guess::{self, Guess};
+use super::alike::Both;
+use super::guess::{self, Guess, Named};
 use super::look::{Look, short};
+use super::names::Names;
 use super::{Group, With};
 use crate::data::RecordKind;
 use crate::data::write::yaml_text;
+use crate::import::mapping::Convention;
 use crate::import::mapping::agree::{is_gravity, record_of};
 use crate::run::needs::ChannelNeed;
 use crate::units::{Dimension, Unit};
@@ -43,15 +46,20 @@ pub fn draft(groups: &[Group], with: &With<'_>) -> (String, usize) {
         let why = format!("the vehicle file; the protocol needs {}", needed.join(", "));
         out.open(0, "vehicle", &why);
     }
+    let names = names(groups, with.convention);
     let mut left: Vec<RecordKind> = vec![RecordKind::Measurement, RecordKind::Simulation];
-    for group in groups {
+    for (at, group) in groups.iter().enumerate() {
         let stated = group.kind.filter(|kind| left.contains(kind));
         let Some(kind) = stated.or(left.first().copied()) else {
             out.line(0, &format!("# not used, its channels are others: {}", group.files), &[]);
             continue;
         };
         left.retain(|other| *other != kind);
-        side(&mut out, group, kind, stated.is_some(), with);
+        let other = groups.iter().zip(&names).enumerate().find(|(other, _)| *other != at);
+        let both = other.and_then(|(_, (other, of_other))| {
+            Both::new([group, other], [&names[at], of_other], with.convention)
+        });
+        side(&mut out, group, (kind, stated.is_some()), with, (&names[at], both.as_ref()));
         if group.sections != groups[0].sections {
             let names = listed(&group.sections);
             let line = format!("# its sections are {names}: they must be the names of the table");
@@ -67,7 +75,32 @@ fn is_outside(path: &str) -> bool {
     parts.into_iter().any(|part| !matches!(part, Component::Normal(_) | Component::CurDir))
 }
 
-fn side(out: &mut Text, group: &Group, kind: RecordKind, stated: bool, with: &With<'_>) {
+/// What the names of each group say. Where digits may be read by several orders, the other side of
+/// the campaign may decide.
+fn names(groups: &[Group], convention: &Convention) -> Vec<Names> {
+    let mut all: Vec<Names> =
+        groups.iter().map(|group| Names::read(&group.looks, convention)).collect();
+    for at in 0..all.len() {
+        let others = (0..all.len()).filter(|other| *other != at && all[*other].orders.len() < 2);
+        let decides = |other: usize| {
+            Both::new([&groups[at], &groups[other]], [&all[at], &all[other]], convention)?.order()
+        };
+        let open = all[at].orders.len() > 1;
+        if let Some((order, why)) = others.filter(|_| open).find_map(decides) {
+            all[at].keep(&[order]);
+            all[at].decided = Some(why);
+        }
+    }
+    all
+}
+
+fn side(
+    out: &mut Text,
+    group: &Group,
+    (kind, stated): (RecordKind, bool),
+    with: &With<'_>,
+    (names, both): (&Names, Option<&Both<'_>>),
+) {
     out.text.push('\n');
     out.line(0, &format!("{}:", kind.key()), &[]);
     if !stated {
@@ -92,7 +125,19 @@ fn side(out: &mut Text, group: &Group, kind: RecordKind, stated: bool, with: &Wi
         .filter(|need| need.record == record_of(kind))
         .filter(|need| !["time", "distance"].contains(&need.column.as_str()))
         .collect();
-    let guesses = guess::guesses(&group.looks, &used, with.convention);
+    let named = Named { looks: &group.looks, convention: with.convention, names };
+    let mut guesses = guess::guesses(named, &used);
+    let signs = both.map(Both::signs).unwrap_or_default();
+    for guess in &mut guesses {
+        guess.reasons.extend(signs.get(&guess.channel).cloned());
+    }
+    // Told once for both sides.
+    let section = group.sections.first().map_or("", String::as_str);
+    for line in
+        both.filter(|_| kind == RecordKind::Measurement).iter().flat_map(|both| both.lines(section))
+    {
+        out.line(2, &format!("# {line}"), &[]);
+    }
     units(out, group, &guesses, &used);
     let looks = &group.looks;
     let mut taken: Vec<&str> = Vec::new();

@@ -43,12 +43,49 @@ fields! {
     pub struct Convention: "a convention" {
         "convention" name: String => "its name",
         "title" title: Option<String>,
-        /// Channels, and foreign names of each.
-        "names" names: Entries<OneOrMore<String>>,
+        /// Axes and channels, and whole foreign names of each.
+        "names" names: Entries<OneOrMore<String>> = Entries(Vec::new()),
+        /// What words of names stand for.
+        "quantities" quantities: Vec<Quantity>,
+        "places" places: Entries<Place> = Entries(Vec::new()),
+        "orders" orders: Vec<Order>,
+        /// They say nothing.
+        "other words" other: OneOrMore<String> = OneOrMore(Vec::new()),
         /// Groups of channels with a common mean, and what that is.
         "common mean" common: Vec<Common>,
         "opposite mean" opposite: Vec<Opposite>,
         "turning" turning: Option<Turning>,
+    }
+}
+
+fields! {
+    /// What is recorded at several places, and how it is called.
+    pub struct Quantity: "a quantity" {
+        /// With its places: `Y_{wheelset}{side}`.
+        "channel" channel: String => "its channel, with places in braces",
+        /// Phrases, one of which is in a name; their words stand in any order.
+        "words" words: OneOrMore<String> => "what it is called",
+        /// Further phrases that may be in it.
+        "of" of: OneOrMore<String> = OneOrMore(Vec::new()),
+    }
+}
+
+fields! {
+    /// A place, with the words that stand before its members.
+    #[derive(Default)]
+    pub struct Place: "a place" {
+        "words" words: OneOrMore<String> = OneOrMore(Vec::new()),
+        "members" members: Entries<OneOrMore<String>>,
+    }
+}
+
+fields! {
+    /// What two digits stand for.
+    pub struct Order: "an order of digits" {
+        "title" title: String => "what the order is",
+        "places" places: OneOrMore<String> => "the place of each digit",
+        /// Places whose digits are no names of members, with the member of each.
+        "digits" digits: Entries<Entries<String>> = Entries(Vec::new()),
     }
 }
 

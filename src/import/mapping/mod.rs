@@ -16,7 +16,9 @@ mod stated;
 use std::sync::Arc;
 
 pub use channels::{ChannelMap, Channels, Term};
-pub use convention::{Common, Convention, Opposite, Turning, find as find_convention};
+pub use convention::{
+    Common, Convention, Opposite, Order, Quantity, Turning, find as find_convention,
+};
 pub use distance::{Distance, Jumps, Match, Time};
 pub use paths::Paths;
 pub use read::read;

@@ -6,6 +6,7 @@
 mod confined;
 mod early;
 mod example;
+mod exports;
 mod memory;
 mod origin;
 mod process;
