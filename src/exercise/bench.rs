@@ -12,6 +12,7 @@ use crate::data::write::{
 use crate::data::{Campaign, RecordKind};
 use crate::effects::Signals;
 use crate::impact::Written;
+use crate::metrics::resample::Located;
 use crate::problem::{Problem, Problems};
 use crate::result::exercise::Disturbance;
 use crate::result::{EdgeResult, Finding};
@@ -99,19 +100,24 @@ impl<'a> Bench<'a> {
         kinds.flat_map(|kind| (0..self.sections.len()).map(move |at| (kind, at))).collect()
     }
 
-    /// Keeps a share of the difference between measurement and simulation.
+    /// Keeps a share of the difference between measurement and simulation, which is taken at the
+    /// same places of the axis; beyond the simulated record its end counts.
     ///
     /// # Errors
-    /// Of opening the campaign.
+    /// Of opening the campaign; an axis that does not increase.
     pub fn narrow(&mut self, share: f64) -> Result<(), Problems> {
         let [measured, simulated] = &mut self.records[..] else { return Ok(()) };
         for ((measured, _), (simulated, _)) in measured.of.iter_mut().zip(&simulated.of) {
+            let [Some(first), Some(last)] = [simulated.axis.first(), simulated.axis.last()] else {
+                continue;
+            };
+            let places: Vec<f64> = measured.axis.iter().map(|x| x.clamp(*first, *last)).collect();
+            let located = Located::on(&simulated.axis, &places)
+                .map_err(|error| Problem::error("axis-not-increasing", error.to_string()))?;
             for channel in &mut measured.channels {
                 let Some(other) = simulated.channel(&channel.name) else { continue };
-                if measured.axis.len() == simulated.axis.len() {
-                    for (value, other) in channel.values.iter_mut().zip(&other.values) {
-                        *value = other + share * (*value - other);
-                    }
+                for (value, other) in channel.values.iter_mut().zip(located.values(&other.values)) {
+                    *value = other + share * (*value - other);
                 }
             }
         }

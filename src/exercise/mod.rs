@@ -26,7 +26,7 @@ use crate::problem::{Problem, Problems, problem};
 use crate::result::exercise::{Exercise, Exercised, NoPair, Pair};
 use crate::result::{FORMAT, THIS};
 use crate::run::needs::needs;
-use bench::{Bench, Said};
+use bench::{Bench, Said, State};
 use search::{Found, Search};
 
 /// Shares of the difference between measurement and simulation that are kept, the largest first
@@ -114,6 +114,11 @@ pub fn limits_of(compiled: &Compiled) -> usize {
     impact::limits(compiled, |_| None).len()
 }
 
+/// Whether a limit leaves no room, or is not met.
+fn near(state: &State) -> bool {
+    state.holds == Some(false) || state.reach.is_some_and(|reach| reach > ROOM)
+}
+
 /// The campaign in which every limit holds, with room.
 fn with_room(bench: &mut Bench<'_>) -> Result<(Said, f64), Problems> {
     let mut now = 1.0;
@@ -123,16 +128,13 @@ fn with_room(bench: &mut Bench<'_>) -> Result<(Said, f64), Problems> {
             now = gap;
         }
         let said = bench.base()?;
-        let near = said.limits.iter().any(|state| state.reach.is_some_and(|reach| reach > ROOM));
-        let fails = said.limits.iter().any(|state| state.holds == Some(false));
-        if !(near || fails) {
+        if !said.limits.iter().any(near) {
             return Ok((said, gap));
         }
     }
     let said = bench.base()?;
-    let both = bench.limits.iter().zip(&said.limits);
-    let near = both.filter(|(_, state)| state.holds != Some(true)).map(|(limit, _)| &limit.rule);
-    let near: Vec<&str> = near.map(String::as_str).collect();
+    let both = bench.limits.iter().zip(&said.limits).filter(|(_, state)| near(state));
+    let near: Vec<&str> = both.map(|(limit, _)| limit.rule.as_str()).collect();
     let name = &bench.campaign.name;
     Err(problem!(
         "limits-not-met",

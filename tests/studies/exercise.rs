@@ -8,7 +8,7 @@ use std::path::Path;
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::common::campaign::certified;
+use crate::common::campaign::{certified, lines};
 use crate::common::program::{Ran, fishplate};
 
 /// Limits from above, from below, of a difference, of its spread, with a factor.
@@ -201,6 +201,41 @@ fn what_cannot_be_exercised_is_said() {
     let ran = exercise(&protocol, base.path(), out.path(), &[]);
     assert!(ran.stdout.contains("states no limit"), "{}{}", ran.stdout, ran.stderr);
     assert_eq!((ran.code, read(out.path())["limits"].as_array().map(Vec::len)), (0, Some(0)));
+}
+
+/// The measurement is brought to the simulation at the same places, also where its samples are
+/// fewer, and lie between those of the simulation.
+#[test]
+fn sides_with_other_samples_are_brought_together() {
+    let base = campaign();
+    let protocol = base.path().join("pairs.fp");
+    let from = PROTOCOL.find("  value       mean").expect("the third quantity");
+    let to = PROTOCOL.find("verdict").expect("the verdict");
+    let metric = "  metric  root-mean-square difference\n  limit   each 0.02 kN\n\n";
+    fs::write(&protocol, PROTOCOL[..from].to_string() + metric + &PROTOCOL[to..]).expect("written");
+    for section in 1..=4 {
+        lines(&base.path().join(format!("measurement/S{section}.csv")), |lines| {
+            lines.truncate(1901);
+        });
+        lines(&base.path().join(format!("simulation/S{section}.csv")), |lines| {
+            for (row, line) in lines.iter_mut().enumerate().skip(1) {
+                let (_, rest) = line.split_once(',').expect("cells");
+                *line = format!("{:.3},{rest}", row as f64 / 100.0 - 0.015);
+            }
+        });
+    }
+    let out = tempfile::tempdir().expect("a folder");
+    let ran = exercise(&protocol, base.path(), out.path(), &[]);
+    assert_eq!(ran.code, 0, "{}{}", ran.stdout, ran.stderr);
+    let found = read(out.path());
+    // The levels differ by up to 0.2 kN, so that a tenth of it leaves no room.
+    assert_eq!(found["gap"], 0.05, "{found}");
+    let text = protocol.display().to_string();
+    let pair = found["limits"][2]["pair"]["folder"].as_str().expect("a pair");
+    for (side, holds) in [("inside", true), ("outside", false)] {
+        let (found, _) = judged(&out.path().join(pair).join(side), &text, 2);
+        assert_eq!(found, [Some(true), Some(true), Some(holds)]);
+    }
 }
 
 /// Without a campaign, records are drawn in which all is well; the pairs hold there too.
