@@ -217,6 +217,12 @@ fn content(bytes: &[u8], ending: &str) -> Result<Option<Format>, NotRead> {
     if starts(b"ARROW1") {
         return Ok(Some(Format::Arrow));
     }
+    if starts(b"\xff\xff\xff\xff") && Format::Arrow.described().1.contains(&ending) {
+        return Err((
+            "an Arrow stream",
+            "write it as an Arrow file, for example with `pyarrow.ipc.new_file`, or as Parquet",
+        ));
+    }
     if starts(b"TDSm") {
         return Ok(Some(Format::Tdms));
     }

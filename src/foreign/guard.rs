@@ -46,6 +46,10 @@ impl From<Problem> for Failure {
     }
 }
 
+/// Words of readers for what they do not know; a file with it may be sound.
+const UNKNOWN: [&str; 4] =
+    ["unsupported", "not supported", "not yet implemented", "disabled feature"];
+
 /// Longest reason of a reader in a message.
 const LONGEST_REASON: usize = 200;
 
@@ -55,7 +59,8 @@ impl<'a> Input<'a> {
         Budget::new(self.bytes.len(), self.shown)
     }
 
-    /// A file that is not as its format prescribes, at a place in it.
+    /// A file that is not as its format prescribes, at a place in it, or that has what a reader does
+    /// not know.
     pub fn damaged(&self, place: &str, why: impl Display) -> Problem {
         let why = why.to_string();
         let why: String = why
@@ -64,6 +69,13 @@ impl<'a> Input<'a> {
             .take(LONGEST_REASON)
             .collect();
         let (shown, title) = (self.shown, self.format.title());
+        let lower = why.to_lowercase();
+        if UNKNOWN.iter().any(|word| lower.contains(word)) {
+            let says = format!("`{shown}`, {title}, has what is not read, at {place}: {why}");
+            let help =
+                "save it in another way, for example without compression, or as Parquet or CSV";
+            return Problem::error("format-not-read", says).help(help);
+        }
         let says = format!("`{shown}`, {title} is damaged or not complete, at {place}: {why}");
         Problem::error("format-damaged", says).help(
             "copy or export the file again; if it opens in its own program, export it there as CSV",

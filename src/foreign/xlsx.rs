@@ -7,7 +7,9 @@ use calamine::{DataRef, Reader, Xlsx, XlsxError};
 
 use super::guard::Failure;
 use super::load::{Budget, most_unpacked};
-use super::text::{most_are_units, name_and_unit, stamps_from_first, unbracketed};
+use super::text::{
+    self, most_are_units, name_and_unit, over_two_rows, stamps_from_first, unbracketed,
+};
 use super::{Channel, Input, Options, Read, Table, conflict, filled};
 use crate::problem::Problem;
 
@@ -170,7 +172,12 @@ fn table(
         return Ok(Err(pairs(name, &rows)));
     };
     let (before, data) = rows.split_at(start);
-    let Headers { names, units } = headers(input, name, before, data[0].0, widest)?;
+    // A cover sheet: names with a number each, without headings.
+    let is_pair = |row: &Row| matches!(row.1[..], [(_, Cell::Text(_)), (_, Cell::Number(_))]);
+    if data.iter().all(is_pair) && before.iter().all(|row| row.1.len() < 2) {
+        return Ok(Err(pairs(name, &rows)));
+    }
+    let Headers { names, units, above } = headers(input, name, before, data[0].0, widest)?;
     let heading = |row: Option<&Row>, column: u32| {
         let (_, cell) = row?.1.iter().find(|(other, _)| *other == column)?;
         filled(&cell.words())
@@ -195,8 +202,11 @@ fn table(
             }
         }
     }
-    for (column, cells) in columns.into_iter().zip(cells) {
-        let (called, unit) = heading(names, column).map_or_else(
+    let named = |row: Option<&Row>| columns.iter().map(|column| heading(row, *column)).collect();
+    let (lower, upper): (Vec<_>, Vec<_>) = (named(names), named(above));
+    let called = over_two_rows(&upper, &lower);
+    for ((column, cells), called) in columns.iter().copied().zip(cells).zip(called) {
+        let (called, unit) = called.map_or_else(
             || (format!("column {}", letters(column)), None),
             |text| name_and_unit(&text),
         );
@@ -234,6 +244,8 @@ fn table(
 struct Headers<'a> {
     names: Option<&'a Row>,
     units: Option<&'a Row>,
+    /// The row right above the names, if it has texts alone.
+    above: Option<&'a Row>,
 }
 
 /// The headers among the rows before the first row of numbers; a row of them is at least half as
@@ -270,7 +282,11 @@ fn headers<'a>(
         Some(number) => Some(named(number, "names")?),
         None => full.iter().rev().find(|row| units.is_none_or(|units| row.0 < units.0)).copied(),
     };
-    Ok(Headers { names, units })
+    let above = names.filter(|_| input.options.names_line.is_none()).and_then(|names| {
+        let above = before.iter().find(|row| row.0 + 1 == names.0)?;
+        above.1.iter().all(|(_, cell)| cell.text().is_some()).then_some(above)
+    });
+    Ok(Headers { names, units, above })
 }
 
 /// The values of a column; of times seconds from the first, and that one in ns since 1970.
@@ -285,14 +301,19 @@ fn values(
     cells: &[Option<&Cell>],
 ) -> Result<Result<Numbers, String>, (usize, String)> {
     let there = || cells.iter().flatten();
-    if there().next().is_none_or(|first| first.text().is_some()) {
+    let are_texts =
+        |first: &Cell| first.text().is_some_and(|text| text::number(text, options).is_none());
+    if there().next().is_none_or(|first| are_texts(first)) {
         let texts: Vec<&str> =
             cells.iter().map(|cell| cell.and_then(Cell::text).unwrap_or("")).collect();
         let times = stamps_from_first(&texts, options);
         let all = there().all(|cell| cell.text().is_some());
         return Ok(times.and_then(|times| all.then_some(times).ok_or("its cells are text".into())));
     }
+    let as_number = |text: &str| text::number(text, options);
     let wrong = cells.iter().enumerate().find_map(|(at, cell)| Some((at, (*cell)?.text()?)));
+    let wrong = wrong
+        .filter(|_| there().any(|cell| cell.text().is_some_and(|text| as_number(text).is_none())));
     if let Some((at, text)) = wrong {
         return Err((at, text.chars().take(40).collect()));
     }
@@ -304,6 +325,7 @@ fn values(
     let number = |cell: &Option<&Cell>| match cell {
         Some(Cell::Days(day)) if days => steps(day - first) / STEPS,
         Some(Cell::Number(number) | Cell::Days(number)) => *number,
+        Some(Cell::Text(text)) => as_number(text).unwrap_or(f64::NAN),
         _ => f64::NAN,
     };
     let since = (steps(first - EPOCH) as i64).saturating_mul(STEP);

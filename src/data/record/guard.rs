@@ -8,7 +8,7 @@
 
 use std::ops::Range;
 
-use parquet::basic::Type;
+use parquet::basic::{Compression, Type};
 use parquet::file::metadata::{ColumnChunkMetaData, ParquetMetaData, RowGroupMetaData};
 
 /// Maximum nesting of a footer, and of the columns of its schema. The deepest part of a footer is
@@ -29,6 +29,17 @@ const DICTIONARY_PAGE: i64 = 2;
 /// Encodings of Parquet that are read, by number: plain, dictionary (both forms), run lengths,
 /// deltas of integers, split bytes. Those of texts by deltas declare sizes inside the page.
 const ENCODINGS: [i64; 6] = [0, 2, 3, 5, 8, 9];
+
+/// Whether values with a compression are read.
+pub fn is_read(codec: Compression) -> bool {
+    use Compression::{SNAPPY, UNCOMPRESSED, ZSTD};
+    matches!(codec, UNCOMPRESSED | SNAPPY | ZSTD(_))
+}
+
+/// The name of a compression, without its level.
+pub fn codec_name(codec: Compression) -> String {
+    codec.to_string().chars().take_while(|c| c.is_ascii_alphanumeric() || *c == '_').collect()
+}
 
 /// Walks the bytes of a structure.
 struct Walk<'a> {

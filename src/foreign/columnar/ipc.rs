@@ -1,7 +1,7 @@
 //! Checks what an Arrow file declares, before its reader allocates it: places of the blocks, sizes
 //! of buffers and what they unpack to.
 
-use arrow_ipc::{Block, CompressionType, RecordBatch};
+use arrow_ipc::{Block, CompressionType, Endianness, RecordBatch};
 
 use super::super::Input;
 use super::super::guard::Failure;
@@ -18,6 +18,12 @@ pub fn check(input: &Input<'_>) -> Result<usize, Problem> {
     let footer = footer(bytes).map_err(|why| input.damaged("the footer", why))?;
     let footer =
         arrow_ipc::root_as_footer(footer).map_err(|error| input.damaged("the footer", error))?;
+    if footer.schema().is_some_and(|schema| schema.endianness() == Endianness::Big) {
+        let says =
+            format!("`{}` is an Arrow file of big-endian numbers, which are not read", input.shown);
+        let help = "write it on a machine with little-endian numbers, or as Parquet";
+        return Err(Problem::error("format-not-read", says).help(help));
+    }
     let mut budget = most_unpacked(bytes.len());
     let mut rows = 0usize;
     let lists = [("dictionary", footer.dictionaries()), ("batch", footer.recordBatches())];

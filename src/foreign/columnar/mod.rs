@@ -50,6 +50,7 @@ pub fn parquet(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
     let mut columns = Columns::new(input, metadata.schema(), rows, pairs)?;
     if input.want == Want::Values {
         let mask = ProjectionMask::roots(metadata.parquet_schema(), columns.places.iter().copied());
+        compressed(input, metadata.metadata(), &mask)?;
         pages(input, metadata.metadata(), &mask)?;
         let builder = ParquetRecordBatchReaderBuilder::new_with_metadata(bytes, metadata);
         let reader = builder
@@ -84,6 +85,25 @@ fn footer(bytes: &[u8]) -> Result<&[u8], String> {
     let length = u32::from_le_bytes([end[0], end[1], end[2], end[3]]) as usize;
     let footer = body.len().checked_sub(length).and_then(|from| body.get(from..));
     footer.ok_or_else(|| format!("{length} bytes are declared, {} are there", body.len()))
+}
+
+/// Refuses columns with a compression that is not read.
+fn compressed(
+    input: &Input<'_>,
+    metadata: &ParquetMetaData,
+    mask: &ProjectionMask,
+) -> Result<(), Problem> {
+    let columns = metadata.row_groups().iter().flat_map(|group| group.columns().iter().enumerate());
+    for (_, chunk) in columns.filter(|(leaf, _)| mask.leaf_included(*leaf)) {
+        let codec = chunk.compression();
+        if !guard::is_read(codec) {
+            let name = guard::codec_name(codec);
+            let says = format!("`{}` is compressed with {name}, which is not read", input.shown);
+            let help = "write it with zstd or snappy, for example `to_parquet(file, compression=\"zstd\")`";
+            return Err(Problem::error("format-not-read", says).help(help));
+        }
+    }
+    Ok(())
 }
 
 /// Checks the pages of the columns that are read.

@@ -35,7 +35,7 @@ pub fn tables_of(variables: Fields, shown: &str) -> Result<Read, Vec<Problem>> {
     let mut read = Read::default();
     let mut loose: Fields = Vec::new();
     for (name, value) in variables {
-        match value {
+        match value.of_structs() {
             // Units of the vectors beside it.
             Value::Structs(elements)
                 if is_units(&name)
@@ -97,6 +97,8 @@ fn table(name: String, fields: Fields, others: &mut Vec<Table>) -> Option<Table>
     if fields.is_empty() {
         return None;
     }
+    let fields: Fields =
+        fields.into_iter().map(|(name, value)| (name, value.of_structs())).collect();
     let mut table = Table { name, first_row: 1, ..Table::default() };
     facts(&fields, &mut table);
     if let Some((channels, used)) = matrix(&fields) {
@@ -107,6 +109,8 @@ fn table(name: String, fields: Fields, others: &mut Vec<Table>) -> Option<Table>
     let (nested, flat): (Fields, Fields) =
         fields.into_iter().partition(|(_, value)| matches!(value, Value::Structs(_)));
     let units = nested.iter().find(|(name, _)| is_units(name)).cloned();
+    let (nested, channels) = fields_as_channels(nested);
+    table.channels.extend(channels);
     for (field, value) in nested {
         let Value::Structs(elements) = value else { continue };
         if units.as_ref().is_some_and(|(name, _)| *name == field) {
@@ -126,12 +130,79 @@ fn table(name: String, fields: Fields, others: &mut Vec<Table>) -> Option<Table>
     Some(table)
 }
 
+/// Structs with a vector and its unit, one for each channel: `S.Y11.data`, `S.Y11.unit`. Two of the
+/// same length at least; otherwise each is a table.
+fn fields_as_channels(nested: Fields) -> (Fields, Vec<Channel>) {
+    let channel = |(name, value): &(String, Value)| {
+        let Value::Structs(elements) = value else { return None };
+        let [fields] = &elements[..] else { return None };
+        let mut vectors = fields.iter().filter_map(|(_, value)| match value {
+            Value::Numbers { rows, columns, values } if values.len() > 1 => {
+                Some((*rows == 1 || *columns == 1, values))
+            }
+            _ => None,
+        });
+        let plain =
+            fields.iter().all(|(_, value)| matches!(value, Value::Numbers { .. } | Value::Text(_)));
+        let (is_vector, values) = vectors.next().filter(|_| plain)?;
+        let unit = fields.iter().find(|(name, _)| is_units(name)).and_then(|(_, unit)| unit.text());
+        let (name, unit) = (name.clone(), unit.and_then(filled));
+        let channel = Channel { name, unit, values: values.clone(), ..Channel::default() };
+        (is_vector && vectors.next().is_none()).then(|| scaled(channel, fields, 0, 1))
+    };
+    let (found, others): (Fields, Fields) =
+        nested.into_iter().partition(|field| channel(field).is_some());
+    let channels: Vec<Channel> = found.iter().filter_map(channel).collect();
+    let alike = channels.windows(2).all(|pair| pair[0].values.len() == pair[1].values.len());
+    if channels.len() > 1 && alike {
+        (others, channels)
+    } else {
+        (found.into_iter().chain(others).collect(), Vec::new())
+    }
+}
+
+/// Beginnings of the fields with what the numbers are multiplied by, and with what is added then.
+const SCALES: &[&str] = &["scal", "skal", "factor", "faktor", "gain", "slope"];
+const OFFSETS: &[&str] = &["offset", "intercept"];
+
+/// A channel with the scale and the offset of its number among so many, where fields state them.
+fn scaled(mut channel: Channel, fields: &Fields, index: usize, count: usize) -> Channel {
+    let number = |words: &[&str]| {
+        let of = |name: &str| words.iter().any(|word| name.to_lowercase().starts_with(word));
+        fields.iter().filter(|(name, _)| of(name)).find_map(|(_, value)| match value {
+            Value::Numbers { values, .. } if values.len() == count => values.get(index).copied(),
+            _ => None,
+        })
+    };
+    let (scale, offset) = (number(SCALES).unwrap_or(1.0), number(OFFSETS).unwrap_or(0.0));
+    if (scale, offset) != (1.0, 0.0) {
+        channel.values.iter_mut().for_each(|value| *value = *value * scale + offset);
+        channel.comment = Some(format!("times {scale} plus {offset}, as the file states"));
+    }
+    channel
+}
+
 fn is_units(name: &str) -> bool {
     let name = name.to_lowercase();
     UNITS.iter().any(|unit| name.starts_with(unit))
 }
 
 impl Value {
+    /// A cell array of structs as an array of structs.
+    fn of_structs(self) -> Self {
+        let single = |cell: &Self| matches!(cell, Self::Structs(elements) if elements.len() == 1);
+        match self {
+            Self::Cells(cells) if !cells.is_empty() && cells.iter().all(single) => {
+                let elements = cells.into_iter().flat_map(|cell| match cell {
+                    Self::Structs(elements) => elements,
+                    _ => Vec::new(),
+                });
+                Self::Structs(elements.collect())
+            }
+            other => other,
+        }
+    }
+
     fn text(&self) -> Option<&str> {
         if let Self::Text(text) = self { Some(text) } else { None }
     }
@@ -186,6 +257,7 @@ fn matrix(fields: &Fields) -> Option<(Vec<Channel>, Vec<String>)> {
     };
     let mut used = vec![data.clone(), (*names_field).clone()];
     used.extend(units.map(|(name, _)| (*name).clone()));
+    let channel = |index: usize| scaled(channel(index), fields, index, count);
     Some(((0..count).map(channel).collect(), used))
 }
 
@@ -205,12 +277,9 @@ fn listed(elements: &[Fields]) -> Option<Vec<Channel>> {
         });
         let longest =
             vectors.max_by_key(|values| values.len()).filter(|values| values.len() > 1)?;
-        Some(Channel {
-            name: filled(text(false)?)?,
-            unit: text(true).and_then(filled),
-            values: longest.clone(),
-            ..Channel::default()
-        })
+        let (name, unit) = (filled(text(false)?)?, text(true).and_then(filled));
+        let channel = Channel { name, unit, values: longest.clone(), ..Channel::default() };
+        Some(scaled(channel, fields, 0, 1))
     };
     let channels: Option<Vec<Channel>> = elements.iter().map(channel).collect();
     channels.filter(|channels| !channels.is_empty())

@@ -30,6 +30,8 @@ struct Reader<'a, 'b> {
     /// Data sets that cells refer to, by their address.
     targets: HashMap<u64, Dataset>,
     objects: usize,
+    /// Bytes before the HDF5 file in this one.
+    base: u64,
 }
 
 /// The variables of a file.
@@ -56,7 +58,8 @@ pub fn variables(input: &Input<'_>, budget: &mut Budget<'_>) -> Result<Fields, P
             targets.insert(set.address(), set);
         }
     }
-    let mut reader = Reader { input, budget, targets, objects: 0 };
+    let base = file.superblock().base_address;
+    let mut reader = Reader { input, budget, targets, objects: 0, base };
     let groups = groups.iter().filter(|group| !group.name().starts_with('#'));
     reader.members(&sets, groups, "", 0)
 }
@@ -177,6 +180,26 @@ impl Reader<'_, '_> {
         }
     }
 
+    /// Whether a data set has a layout of version 2, which the reader takes for another (HDF5 File
+    /// Format Specification, IV.A.1.a: headers of version 1; IV.A.2.i: their messages of type 8).
+    fn has_old_layout(&self, set: &Dataset) -> bool {
+        const LAYOUT: u16 = 8;
+        const PREFIX: usize = 16;
+        let start = |base: u64| usize::try_from(base.saturating_add(set.address())).ok();
+        let header = |base: u64| self.input.bytes.get(start(base)?..)?.get(PREFIX..);
+        let found = |mut rest: &[u8]| -> Option<bool> {
+            loop {
+                let kind = u16::from_le_bytes(*rest.first_chunk()?);
+                let size = usize::from(u16::from_le_bytes(*rest.get(2..)?.first_chunk()?));
+                if kind == LAYOUT {
+                    return Some(*rest.get(8)? == 2);
+                }
+                rest = rest.get(8 + size..)?;
+            }
+        };
+        [0, self.base].into_iter().any(|base| header(base).and_then(found) == Some(true))
+    }
+
     /// The numbers of a data set; `None` if they are of a type that is not read.
     fn numbers(&self, set: &Dataset, path: &str) -> Result<Option<Vec<f64>>, Problem> {
         let number = match set.dtype() {
@@ -186,7 +209,13 @@ impl Reader<'_, '_> {
             // Only these are asked for.
             _ => return Ok(None),
         };
-        let bytes = set.read_native_bytes().map_err(|error| self.bad(path, error))?;
+        let bytes = set.read_native_bytes().map_err(|error| {
+            if self.has_old_layout(set) {
+                self.bad(path, "a data layout of version 2 (HDF5 before 1.6.3) is not supported")
+            } else {
+                self.bad(path, error)
+            }
+        })?;
         let described = set.raw_datatype().map_err(|error| self.bad(path, error))?;
         let values = number.read(&bytes, cfg!(target_endian = "big"));
         Ok(values.and_then(|values| reduced(values, number, &described)))

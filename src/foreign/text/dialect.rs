@@ -1,5 +1,6 @@
 //! Lines, cells, separator and decimal mark.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use super::super::Options;
@@ -74,10 +75,63 @@ pub struct Line<'a> {
 pub fn lines(text: &str) -> Vec<Line<'_>> {
     let old = !text.contains('\n');
     let split = text.split(if old { '\r' } else { '\n' });
+    let mut next = 1;
     split
-        .enumerate()
-        .map(|(at, line)| Line { number: at + 1, text: line.strip_suffix('\r').unwrap_or(line) })
+        .map(|line| {
+            let number = next;
+            next += 1 + line.matches(BREAK).count();
+            Line { number, text: line.strip_suffix('\r').unwrap_or(line) }
+        })
         .collect()
+}
+
+/// Stands for a line break in quotes.
+const BREAK: char = '\u{b}';
+
+/// A text with the minus of typesetters as that of keyboards, and with [`BREAK`] for line breaks in
+/// quotes.
+pub fn plainly(text: Cow<'_, str>) -> Cow<'_, str> {
+    /// Most lines of a cell.
+    const MOST: usize = 8;
+    const MINUS: char = '\u{2212}';
+    let text = if text.contains(MINUS) { text.replace(MINUS, "-").into() } else { text };
+    if !text.contains('"') || !text.split('\n').any(|line| is_open(line, false)) {
+        return text;
+    }
+    let lines: Vec<&str> = text.split('\n').collect();
+    let (mut plain, mut at) = (String::with_capacity(text.len()), 0);
+    while at < lines.len() {
+        let (mut end, mut open) = (at, is_open(lines[at], false));
+        while open && end + 1 < lines.len() && end - at < MOST {
+            end += 1;
+            open = is_open(lines[end], true);
+        }
+        // A quote that is not closed stands for itself.
+        let end = if open { at } else { end };
+        plain += &lines[at..=end].join(&BREAK.to_string());
+        at = end + 1;
+        plain += if at < lines.len() { "\n" } else { "" };
+    }
+    plain.into()
+}
+
+/// Whether a quoted cell is open at the end of a line. A quote opens a cell at its beginning, and
+/// closes it at its end.
+fn is_open(line: &str, mut open: bool) -> bool {
+    let is_edge = |edge: Option<char>| {
+        edge.is_none_or(|edge| matches!(edge, ',' | ';' | '\t' | '|' | ' ' | '\r'))
+    };
+    for (at, _) in line.match_indices('"') {
+        let (before, after) = (line[..at].chars().next_back(), line[at + 1..].chars().next());
+        open = if open { !is_edge(after) } else { is_edge(before) };
+    }
+    open
+}
+
+/// The separator that a line `sep=;` states.
+pub fn stated_separator(line: &str) -> Option<char> {
+    let mut rest = line.trim_matches('"').strip_prefix("sep=")?.chars();
+    rest.next().filter(|_| rest.next().is_none())
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -144,12 +198,13 @@ fn touching(word: &str) -> Option<usize> {
 
 /// Bytes of a quoted cell at the start of a text, or 0.
 fn quoted(text: &str, separator: char) -> usize {
-    let open = text.len() - text.trim_start_matches([' ', '\t']).len();
+    let blanks = |c: char| c == ' ' || c == '\t' && separator != '\t';
+    let open = text.len() - text.trim_start_matches(blanks).len();
     let Some(inside) = text[open..].strip_prefix('"') else { return 0 };
     let mut from = 0;
     while let Some(close) = inside[from..].find('"').map(|at| from + at) {
         let after = &inside[close + 1..];
-        let rest = after.trim_start_matches([' ', '\t']);
+        let rest = after.trim_start_matches(blanks);
         if rest.is_empty() || rest.starts_with(separator) {
             return open + 1 + close + 1;
         }
@@ -288,10 +343,12 @@ pub fn detect(lines: &[Line<'_>], options: &Options) -> Option<Dialect> {
         Some(said) => vec![said.letter()],
         None => vec!['.', ','],
     };
+    // A decimal comma between commas stands in quotes.
+    let quoted = sample.iter().any(|line| line.contains('"'));
     let mut best: Option<(f64, Dialect)> = None;
     for separator in separators {
         for decimal in
-            decimals.iter().copied().filter(|decimal| separator != Separator::Mark(*decimal))
+            decimals.iter().copied().filter(|mark| separator != Separator::Mark(*mark) || quoted)
         {
             let rows: Vec<(usize, f64)> =
                 sample.iter().filter_map(|line| weigh(line, separator, decimal)).collect();

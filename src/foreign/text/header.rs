@@ -1,6 +1,8 @@
 //! Names and units of the columns, and what the lines before the numbers say besides.
 
-use super::dialect::{Line, comment};
+use std::ops::Range;
+
+use super::dialect::{Line, Separator, comment, split};
 use super::{Text, at};
 use crate::foreign::{conflict, filled};
 use crate::problem::Problem;
@@ -28,7 +30,11 @@ pub struct Header {
 ///
 /// # Errors
 /// `header-line`.
-pub fn read(text: &Text<'_>, before: &[Line<'_>]) -> Result<Header, Problem> {
+pub fn read(
+    text: &Text<'_>,
+    before: &[Line<'_>],
+    first: Option<Line<'_>>,
+) -> Result<Header, Problem> {
     let Text { options, dialect, .. } = text;
     let mut header = Header::default();
     let (comments, others): (Vec<Line<'_>>, Vec<Line<'_>>) =
@@ -39,7 +45,7 @@ pub fn read(text: &Text<'_>, before: &[Line<'_>]) -> Result<Header, Problem> {
         .collect();
     header.facts.extend(comments.iter().filter_map(|(_, said)| fact(said)).take(MOST_FACTS));
     let (rows, others): (Vec<Line<'_>>, Vec<Line<'_>>) = others.into_iter().partition(|line| {
-        let cells = text.cells(line.text);
+        let cells = cells_of(text, line.text);
         cells.len() == dialect.columns && cells.iter().any(|cell| !cell.is_empty())
     });
     let left = MOST_FACTS - header.facts.len();
@@ -53,18 +59,34 @@ pub fn read(text: &Text<'_>, before: &[Line<'_>]) -> Result<Header, Problem> {
             // A row of numbers has no names, unless there is no other.
             let last = above.clone().next();
             let has_words = |row: &&Line<'_>| {
-                text.cells(row.text).into_iter().any(|cell| has_letters(&row.text[cell]))
+                cells_of(text, row.text).into_iter().any(|cell| has_letters(&row.text[cell]))
             };
             above.find(has_words).or(last).copied()
         }
     };
     // The names after a comment mark: `# time Y Q`.
     let are_names = |(_, said): &&(Line<'_>, &str)| {
-        let cells = text.cells(said);
+        let cells = cells_of(text, said);
         cells.len() == dialect.columns && cells.into_iter().all(|cell| has_letters(&said[cell]))
     };
-    if let Some(names) = names {
+    let mut in_lines = false;
+    let both = units.zip(first).filter(|_| options.names_line.is_none());
+    if let Some(names) = both.and_then(|(units, first)| stacked(text, before, units, first)) {
+        header.columns = names;
+        in_lines = true;
+    } else if let Some(names) = names {
         header.columns = headings(text, names, names.text);
+        let above = rows.iter().rev().find(|row| row.number < names.number);
+        if let Some(above) = above.filter(|above| above.number + 1 == names.number) {
+            let upper = headings(text, *above, above.text);
+            let upper: Vec<Option<String>> =
+                upper.into_iter().map(|column| named(&column.name)).collect();
+            let lower: Vec<Option<String>> =
+                header.columns.iter().map(|column| named(&column.name)).collect();
+            for (column, name) in header.columns.iter_mut().zip(over_two_rows(&upper, &lower)) {
+                column.name = name.unwrap_or(column.name.clone());
+            }
+        }
     } else if let Some(columns) = listed(text, &comments) {
         header.columns = columns;
     } else if let Some((line, said)) = comments.iter().rev().find(are_names) {
@@ -76,15 +98,15 @@ pub fn read(text: &Text<'_>, before: &[Line<'_>]) -> Result<Header, Problem> {
         header.facts.push(("names".into(), "none in the file; columns are numbered".into()));
     }
     if let Some(units) = units {
-        for (column, cell) in header.columns.iter_mut().zip(text.cells(units.text)) {
+        for (column, cell) in header.columns.iter_mut().zip(cells_of(text, units.text)) {
             let (of_line, of_name) = (unbracketed(&units.text[cell]), column.unit.take());
             column.other_unit = conflict(of_line.as_deref(), of_name.clone());
             column.unit = of_line.or(of_name);
         }
     }
     let used = [names, units].map(|line| line.map(|line| line.number));
-    for row in rows.iter().filter(|row| !used.contains(&Some(row.number))) {
-        for (column, cell) in header.columns.iter_mut().zip(text.cells(row.text)) {
+    for row in rows.iter().filter(|row| !in_lines && !used.contains(&Some(row.number))) {
+        for (column, cell) in header.columns.iter_mut().zip(cells_of(text, row.text)) {
             let Some(more) = filled(&row.text[cell]) else { continue };
             column.comment = Some(match column.comment.take() {
                 Some(before) => format!("{before}, {more}"),
@@ -134,7 +156,7 @@ fn said<'a>(
         return Err(Problem::error("header-line", says)
             .help(format!("the numbers begin in line {}", last + 1)));
     };
-    let (found, wanted) = (text.cells(line.text).len(), text.dialect.columns);
+    let (found, wanted) = (cells_of(text, line.text).len(), text.dialect.columns);
     if found == wanted {
         return Ok(*line);
     }
@@ -147,7 +169,7 @@ fn said<'a>(
 /// The line of units: said, or the last line of the header if most of its cells are units.
 fn line_of_units<'a>(text: &Text<'_>, rows: &[Line<'a>]) -> Result<Option<Line<'a>>, Problem> {
     let are_units = |row: &&Line<'_>| {
-        most_are_units(text.cells(row.text).into_iter().map(|cell| &row.text[cell]))
+        most_are_units(cells_of(text, row.text).into_iter().map(|cell| &row.text[cell]))
     };
     match text.options.units_line {
         Some(0) => Ok(None),
@@ -215,13 +237,102 @@ pub fn unit_of_name(name: &str, stated: &str) -> Option<String> {
 /// The headings in the cells of a line, or of its end.
 fn headings(text: &Text<'_>, line: Line<'_>, end: &str) -> Vec<Heading> {
     let start = line.text.len() - end.len();
-    let heading = |(index, cell): (usize, std::ops::Range<usize>)| {
+    let heading = |(index, cell): (usize, Range<usize>)| {
         let (name, unit) = name_and_unit(&end[cell.clone()]);
+        let name = name.split_whitespace().collect::<Vec<_>>().join(" ");
         let name = if name.is_empty() { format!("column {}", index + 1) } else { name };
         let span = at(text.shown, line, start + cell.start..start + cell.end);
         Heading { name, unit, span: Some(span), ..Heading::default() }
     };
-    text.cells(end).into_iter().enumerate().map(heading).collect()
+    cells_of(text, end).into_iter().enumerate().map(heading).collect()
+}
+
+/// A name of the file, not that of a column without one.
+fn named(name: &str) -> Option<String> {
+    filled(name).filter(|name| !name.starts_with("column "))
+}
+
+/// Names that stand over two rows, where the lower row lacks some: `Zeit | Weg | Radsatz 1 |` above
+/// ` | | Y re | Q re`. A name of the upper row holds for the columns to its right that have none.
+pub fn over_two_rows(upper: &[Option<String>], lower: &[Option<String>]) -> Vec<Option<String>> {
+    let lacks = upper.iter().zip(lower).any(|(upper, lower)| upper.is_some() && lower.is_none());
+    if !lacks {
+        return lower.to_vec();
+    }
+    let mut group: Option<&String> = None;
+    let each = lower.iter().enumerate().map(|(at, lower)| {
+        group = upper.get(at).and_then(Option::as_ref).or(group.filter(|_| lower.is_some()));
+        match (group, lower) {
+            (Some(group), Some(lower)) => Some(format!("{group} {lower}")),
+            (group, lower) => group.or(lower.as_ref()).cloned(),
+        }
+    });
+    each.collect()
+}
+
+/// The cells of a line of the header. Between blanks, a unit in brackets belongs to the name before
+/// it, and names may have blanks if two at least separate them.
+fn cells_of(text: &Text<'_>, line: &str) -> Vec<Range<usize>> {
+    let cells = text.cells(line);
+    if text.dialect.separator != Separator::Blanks || cells.len() == text.dialect.columns {
+        return cells;
+    }
+    let mut joined: Vec<Range<usize>> = Vec::new();
+    for cell in &cells {
+        match joined.last_mut() {
+            Some(last) if line[cell.clone()].starts_with(['[', '(']) => last.end = cell.end,
+            _ => joined.push(cell.clone()),
+        }
+    }
+    let wide = apart(line);
+    [joined, wide].into_iter().find(|other| other.len() == text.dialect.columns).unwrap_or(cells)
+}
+
+/// The parts of a line between two blanks or more.
+fn apart(line: &str) -> Vec<Range<usize>> {
+    let mut parts: Vec<Range<usize>> = Vec::new();
+    for cell in split(line, Separator::Blanks) {
+        match parts.last_mut() {
+            Some(last) if line[last.end..cell.start] == *" " => last.end = cell.end,
+            _ => parts.push(cell),
+        }
+    }
+    parts
+}
+
+/// Names over several lines above the units, each part above the numbers of its column, as programs
+/// write columns of fixed width.
+fn stacked(
+    text: &Text<'_>,
+    before: &[Line<'_>],
+    units: Line<'_>,
+    first: Line<'_>,
+) -> Option<Vec<Heading>> {
+    if text.dialect.separator != Separator::Blanks {
+        return None;
+    }
+    let ends: Vec<usize> = text.cells(first.text).iter().map(|cell| cell.end).collect();
+    let mut names: Vec<Vec<&str>> = vec![Vec::new(); ends.len()];
+    let (mut lines, mut next) = (0, units.number);
+    for line in before.iter().rev().skip_while(|line| line.number >= units.number) {
+        if line.number + 1 != next || line.text.trim().is_empty() {
+            break;
+        }
+        let mut taken: Vec<usize> = Vec::new();
+        for part in apart(line.text) {
+            let at = ends.iter().position(|end| part.end <= *end)?;
+            let from = at.checked_sub(1).map_or(0, |before| ends[before]);
+            if part.start < from || taken.contains(&at) {
+                return None;
+            }
+            taken.push(at);
+            names[at].insert(0, &line.text[part]);
+        }
+        (lines, next) = (lines + 1, line.number);
+    }
+    let heading = |parts: Vec<&str>| Heading { name: parts.join(" "), ..Heading::default() };
+    let all = lines > 1 && names.iter().all(|parts| !parts.is_empty());
+    all.then(|| names.into_iter().map(heading).collect())
 }
 
 /// A list of channels in comments, one a line: `Channel 3: Y_11 [N]`, `3 Y_11 N`.

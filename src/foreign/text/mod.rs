@@ -19,7 +19,7 @@ use std::ops::Range;
 pub use dialect::{DecimalMark, Separator};
 use dialect::{Dialect, Line, is_row};
 #[cfg(feature = "foreign")]
-pub use header::{most_are_units, unbracketed};
+pub use header::{most_are_units, over_two_rows, unbracketed};
 pub use header::{name_and_unit, unit_of_name};
 pub use stamps::{ClockForm, DateOrder};
 #[cfg(feature = "foreign")]
@@ -60,7 +60,17 @@ pub fn read(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
         let says = format!("`{shown}` has more than {} million lines", MOST_LINES >> 20);
         return Err(Problem::error("too-many-values", says).help("divide it into files").into());
     }
+    let content = dialect::plainly(content);
     let mut lines = dialect::lines(&content);
+    // A first line of Excel, `sep=;`, states the separator.
+    let stated;
+    let (shown, mut options) = (shown, options);
+    if let Some(mark) = lines.first().and_then(|line| dialect::stated_separator(line.text)) {
+        lines.remove(0);
+        let separator = options.separator.or(Some(Separator::Mark(mark)));
+        stated = Options { separator, ..options.clone() };
+        options = &stated;
+    }
     if let Some(line) = lines.iter().find(|line| line.text.len() > LONGEST_LINE) {
         let says =
             format!("line {} of `{shown}` has more than {} MB", line.number, LONGEST_LINE >> 20);
@@ -84,7 +94,8 @@ pub fn read(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
     let start = text.first_row(&lines).ok_or_else(no_numbers)?;
     let (before, rows) = lines.split_at(start);
     text.dialect.columns += usize::from(text.last_is_empty(before, rows));
-    let header = header::read(&text, before)?;
+    let (rows, footer) = rows.split_at(text.end_of_rows(rows));
+    let header = header::read(&text, before, rows.first().copied())?;
     input.budget().take(text.dialect.columns, rows.len(), "the table")?;
     let mut table = Table {
         facts: header.facts,
@@ -92,13 +103,17 @@ pub fn read(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
         ..Table::default()
     };
     values::read(&text, rows, header.columns, &mut table)?;
-    let facts = vec![
+    let mut facts = vec![
         ("encoding".into(), encoding.into()),
         ("separator".into(), dialect.separator.words()),
         ("decimal mark".into(), format!("`{}`", dialect.decimal)),
         ("first line of numbers".into(), table.first_row.to_string()),
         ("form".into(), input.format.word().into()),
     ];
+    if let Some(first) = footer.iter().find(|line| is_row(**line, options)) {
+        let said = format!("left out from line {}", first.number);
+        facts.push(("lines after the numbers".into(), said));
+    }
     Ok(Read { tables: vec![table], facts })
 }
 
@@ -146,6 +161,38 @@ impl Text<'_> {
         named.any(|line| wider(line) == Some(false)) && rows.first().and_then(wider) == Some(true)
     }
 
+    /// The number of rows before the remarks at the end of a file: `"End of the test";"21.05.2026"`.
+    /// They begin with a text, where the rows begin with a number or a time, and have no number.
+    fn end_of_rows(&self, rows: &[Line<'_>]) -> usize {
+        /// Most lines of remarks.
+        const MOST: usize = 10;
+        let decimal = self.dialect.decimal;
+        let is_text = |word: &str| {
+            numbers::read(word, decimal) == numbers::Cell::Other && stamps::read(word).is_none()
+        };
+        let begins_with_text = |line: &Line<'_>| {
+            self.cells(line.text).first().is_some_and(|cell| is_text(&line.text[cell.clone()]))
+        };
+        let is_number = |word: &str| {
+            !matches!(numbers::read(word, decimal), numbers::Cell::Other | numbers::Cell::Empty)
+        };
+        let is_remark = |line: &Line<'_>| {
+            let cells = self.cells(line.text);
+            let plain = !cells.iter().any(|cell| is_number(&line.text[cell.clone()]));
+            begins_with_text(line) && (plain || cells.len() != self.dialect.columns)
+        };
+        let blank = |line: &Line<'_>| !is_row(*line, self.options);
+        if rows.first().is_none_or(begins_with_text) {
+            return rows.len();
+        }
+        let from = rows.len().saturating_sub(MOST);
+        let last = rows[from..].iter().rposition(|line| !is_remark(line) && !blank(line));
+        match last {
+            Some(last) if rows[from + last + 1..].iter().any(is_remark) => from + last + 1,
+            _ => rows.len(),
+        }
+    }
+
     /// An error at a place in a line.
     fn fault(
         &self,
@@ -156,6 +203,27 @@ impl Text<'_> {
     ) -> Problem {
         error(code, says, &at(self.shown, line, place))
     }
+}
+
+/// The number that a text is; `None` if it is none, or may be two.
+#[cfg(feature = "foreign")]
+pub fn number(text: &str, options: &Options) -> Option<f64> {
+    let read = |mark: DecimalMark| numbers::read(text.trim(), mark.letter());
+    let marks = [DecimalMark::Point, DecimalMark::Comma];
+    let marks = marks.into_iter().filter(|mark| options.decimal.is_none_or(|said| said == *mark));
+    let mut found = None;
+    for cell in marks.map(read) {
+        match (cell, found) {
+            (numbers::Cell::Number(number), None) => found = Some(number),
+            (numbers::Cell::Number(number), Some(other)) if number == other => {}
+            (numbers::Cell::Thousands(number), None) if options.decimal.is_some() => {
+                found = Some(number)
+            }
+            (numbers::Cell::Number(_) | numbers::Cell::Thousands(_), _) => return None,
+            _ => {}
+        }
+    }
+    found
 }
 
 fn no_numbers(input: &Input<'_>, lines: &[Line<'_>]) -> Problem {

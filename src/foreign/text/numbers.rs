@@ -8,6 +8,8 @@ pub enum Cell {
     Empty,
     /// A number with marks between its thousands, as a decimal mark that is known makes it.
     Thousands(f64),
+    /// A place on a line in metres, written as kilometres and metres: `130+0663.25`.
+    Chainage(f64),
     NotFinite,
     Other,
 }
@@ -53,7 +55,11 @@ pub fn read(text: &str, decimal: char) -> Cell {
     let open = comma && plain.ends_with(b".");
     match fast_float2::parse::<f64, _>(&*plain) {
         Ok(number) if numeric && !open => finite(number),
-        _ => thousands(text, decimal).map_or(Cell::Other, Cell::Thousands),
+        _ => match (thousands(text, decimal), chainage(text, decimal)) {
+            (Some(number), _) => Cell::Thousands(number),
+            (None, Some(metres)) => Cell::Chainage(metres),
+            (None, None) => Cell::Other,
+        },
     }
 }
 
@@ -81,6 +87,18 @@ fn thousands(text: &str, decimal: char) -> Option<f64> {
     let number = || format!("{}.{fraction}", groups.concat()).parse::<f64>().ok();
     let size = grouped.then(number).flatten()?;
     Some(if text.starts_with('-') { -size } else { size })
+}
+
+/// `130+0663.25`: kilometres and metres, which have three digits at least.
+fn chainage(text: &str, decimal: char) -> Option<f64> {
+    let (kilometres, metres) = text.split_once('+')?;
+    let (whole, fraction) = metres.split_once(decimal).unwrap_or((metres, "0"));
+    let digits = |text: &str, count: std::ops::RangeInclusive<usize>| {
+        count.contains(&text.len()) && text.bytes().all(|byte| byte.is_ascii_digit())
+    };
+    let known = digits(kilometres, 1..=4) && digits(whole, 3..=4) && digits(fraction, 1..=9);
+    let metres = format!("{whole}.{fraction}").parse::<f64>().ok().filter(|_| known)?;
+    Some(1000.0 * kilometres.parse::<f64>().ok()? + metres)
 }
 
 /// Whether the mark in the numbers of a column can stand between thousands as well: `990`, `1.004`.
@@ -168,6 +186,15 @@ mod tests {
             assert_eq!(read(text, decimal), Cell::Other, "{text}");
         }
         assert_eq!(read(&"1".repeat(100), '.'), Cell::Other);
+    }
+
+    #[test]
+    fn places_on_a_line_are_in_metres() {
+        assert_eq!(read("130+0663.25", '.'), Cell::Chainage(130_663.25));
+        assert_eq!(read("7+012,5", ','), Cell::Chainage(7012.5));
+        for text in ["1+2", "+1+234", "1+234+5", "a+234", "1+23456"] {
+            assert_eq!(read(text, '.'), Cell::Other, "{text}");
+        }
     }
 
     #[test]

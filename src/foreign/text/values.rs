@@ -17,6 +17,8 @@ enum Column {
     /// No cell was filled so far: this many rows.
     Unknown(usize),
     Numbers(Vec<f64>, Marks),
+    /// Places on a line in metres, written as kilometres and metres.
+    Chainage(Vec<f64>),
     /// Stamps, `None` where empty.
     Stamps(Vec<Option<Stamp>>),
     /// Text, with the first of it.
@@ -40,11 +42,20 @@ impl Column {
                     Some(_) => *self = Self::Stamps(vec![None; *empty]),
                     None => *self = Self::Text(shortened(word)),
                 },
+                numbers::Cell::Chainage(_) => *self = Self::Chainage(vec![f64::NAN; *empty]),
                 _ => *self = Self::Numbers(vec![f64::NAN; *empty], Marks::default()),
             }
         }
         match self {
             Self::Unknown(_) | Self::Text(_) => {}
+            Self::Chainage(found) => found.push(match numbers::read(word, decimal) {
+                numbers::Cell::Chainage(metres) => metres,
+                numbers::Cell::Empty => f64::NAN,
+                _ => {
+                    let says = "is not kilometres and metres as in the rows before";
+                    return Err(("not-a-number", says, None));
+                }
+            }),
             Self::Stamps(found) if word.is_empty() => found.push(None),
             Self::Stamps(found) => {
                 let says = "is not a time stamp as in the rows before";
@@ -174,6 +185,11 @@ fn finish(
             Column::Numbers(values, _) => {
                 let Heading { unit, other_unit, comment, .. } = heading;
                 Ok(Channel { values, unit, other_unit, comment, ..Channel::default() })
+            }
+            Column::Chainage(values) => {
+                let comment = Some("kilometres and metres".to_string());
+                let unit = Some("m".to_string());
+                Ok(Channel { values, unit, comment, ..Channel::default() })
             }
             Column::Stamps(_) if days.as_ref().is_some_and(|(day, _)| *day == index) => {
                 Err("its dates are part of the times".into())

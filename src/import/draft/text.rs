@@ -164,6 +164,10 @@ fn side(
     for look in looks.iter().filter(|look| !taken.contains(&look.name.as_str())) {
         out.line(4, &format!("# not mapped: {} ({})", look.name, look.in_words()), &[]);
     }
+    let tables = group.first.tables.iter().filter(|table| !table.channels.is_empty());
+    for (name, why) in tables.take(group.tables.max(1)).flat_map(|table| &table.left_out) {
+        out.line(4, &format!("# left out: {name} ({why})"), &[]);
+    }
 }
 
 /// What was guessed for a channel.

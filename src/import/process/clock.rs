@@ -4,8 +4,9 @@ use std::ops::Range;
 
 use super::recording::{Recording, nearest_or_first, two_units};
 use super::short;
+use super::starts::{Zero, starts};
 use crate::data::checks::{self, Steps};
-use crate::foreign::{Channel, NANOSECONDS, Table};
+use crate::foreign::{Channel, Table};
 use crate::metrics::{resample, sinc};
 use crate::problem::{Problem, error};
 use crate::source::Spanned;
@@ -33,17 +34,8 @@ pub struct Clock {
     pub zero: Zero,
     /// Of several tables: seconds from the first that starts.
     pub starts: f64,
-}
-
-/// What the times of a table count from.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Zero {
-    /// A time in ns, of the calendar or of the day.
-    Stamp(i64),
-    /// That of the channels of time of other tables.
-    Numbers,
-    /// The first sample, whose time nothing states.
-    Start,
+    /// Rows that had the time of the row after them.
+    pub events: usize,
 }
 
 /// Where time has gaps, as the file has it.
@@ -68,74 +60,14 @@ impl Clock {
             gaps: None,
             zero: Zero::Numbers,
             starts: 0.0,
+            events: 0,
         }
     }
 }
-
-/// The clocks of the tables that are used, as one: their times count from the same zero.
-///
-/// # Errors
-/// `time-missing`, `time-not-increasing`, `too-short`, `unknown-channel`, `unknown-table`,
-/// `unit-missing`; of the shift `unknown-fact`, `wrong-number`. `start-missing`: it is not known when
-/// one table starts on the clock of another.
-pub fn clocks(recording: &Recording<'_>, used: &[bool]) -> Result<Vec<Option<Clock>>, Problem> {
-    let alone = used.iter().filter(|used| **used).count() == 1;
-    let tables = recording.tables.iter().zip(used);
-    let mut clocks = tables
-        .map(|(table, used)| used.then(|| clock(recording, table, alone)).transpose())
-        .collect::<Result<Vec<_>, Problem>>()?;
-    if alone {
-        return Ok(clocks);
-    }
-    let zeros = || clocks.iter().flatten().map(|clock| clock.zero);
-    let stamps =
-        zeros().filter_map(|zero| if let Zero::Stamp(at) = zero { Some(at) } else { None });
-    let first = stamps.min();
-    let mut others = zeros().filter(|zero| !matches!(zero, Zero::Stamp(_)));
-    if first.is_some() && others.next().is_some() || zeros().any(|zero| zero == Zero::Start) {
-        return Err(start_missing(recording, &clocks));
-    }
-    let drift = recording.side.time.drift.0;
-    for clock in clocks.iter_mut().flatten() {
-        if let (Some(first), Zero::Stamp(at)) = (first, clock.zero) {
-            clock.starts = at.saturating_sub(first) as f64 / NANOSECONDS as f64 / (1.0 + drift);
-            clock.times.iter_mut().for_each(|time| *time += clock.starts);
-        }
-    }
-    Ok(clocks)
-}
-
-/// The error that tables have no common clock: what each counts from.
-fn start_missing(recording: &Recording<'_>, clocks: &[Option<Clock>]) -> Problem {
-    let tables = || recording.tables.iter().zip(clocks);
-    let counts = tables().filter_map(|(table, clock)| {
-        let from = match clock.as_ref()?.zero {
-            Zero::Stamp(_) => "a time of the calendar or of the day",
-            Zero::Numbers => "the zero of its channel of time",
-            Zero::Start => "its first sample",
-        };
-        Some(format!("`{}` from {from}", table.name))
-    });
-    let counts: Vec<String> = counts.take(MOST_TOLD).collect();
-    let says = format!(
-        "`{}`: it is not known when its tables start on one clock; their times count: {}",
-        recording.shown,
-        counts.join(", ")
-    );
-    let names = tables().filter(|(_, clock)| clock.is_some()).map(|(table, _)| &table.name);
-    let starts: Vec<String> = names.take(MOST_TOLD).map(|name| format!("{name}: 0 s")).collect();
-    error("start-missing", says, &recording.side.time.span).help(format!(
-        "state it beside the rate: `time: {{starts: {{{}}}}}`; or write the channels of their times, `time: [NAME, NAME]`",
-        starts.join(", ")
-    ))
-}
-
-/// Tables that are named in a problem.
-const MOST_TOLD: usize = 6;
 
 /// The times of a table, with the shift and the drift of the mapping. `alone`: no other table is
 /// used.
-fn clock(recording: &Recording<'_>, table: &Table, alone: bool) -> Result<Clock, Problem> {
+pub fn clock(recording: &Recording<'_>, table: &Table, alone: bool) -> Result<Clock, Problem> {
     let time = &recording.side.time;
     let which =
         if table.name.is_empty() { String::new() } else { format!(", table `{}`", table.name) };
@@ -174,6 +106,7 @@ fn clock(recording: &Recording<'_>, table: &Table, alone: bool) -> Result<Clock,
             (0..table.rows).map(|row| row as f64 / rate + start.unwrap_or(0.0)).collect()
         }
     };
+    let events = if recording.side.rate.is_some() { events(&mut times) } else { 0 };
     increasing(recording, table, &times, &file)?;
     // Before a shift, which would hide that the stamps are rounded.
     let Steps { usual, gaps, uneven, .. } = checks::steps(&times, factor);
@@ -192,24 +125,14 @@ fn clock(recording: &Recording<'_>, table: &Table, alone: bool) -> Result<Clock,
     let shift = shift.unwrap_or(0.0);
     times.iter_mut().for_each(|at| *at = *at / (1.0 + time.drift.0) + shift);
     let first = times[0];
-    let rate = if gaps.is_some() { (1.0 + time.drift.0) / usual } else { mean_rate(&times) };
+    let rate =
+        if gaps.is_some() || events > 0 { (1.0 + time.drift.0) / usual } else { mean_rate(&times) };
     let even = times
         .iter()
         .enumerate()
         .all(|(at, time)| (time - (first + at as f64 / rate)).abs() * rate <= EVEN);
-    let uneven = uneven.is_some() || gaps.is_some();
-    Ok(Clock { times, rate, even, uneven, gaps, zero, starts: 0.0 })
-}
-
-/// When a table starts, as the mapping states it.
-fn starts(recording: &Recording<'_>, table: &Table) -> Result<Option<f64>, Problem> {
-    let starts = &recording.side.time.starts.0;
-    let known = || recording.tables.iter().map(|table| table.name.as_str());
-    if let Some((key, _)) = starts.iter().find(|(key, _)| !known().any(|name| name == key.text)) {
-        let says = format!("`{}` has no table `{}`", recording.shown, key.text);
-        return Err(error("unknown-table", says, &key.span).suggest(&key.text, known()));
-    }
-    Ok(starts.iter().find(|(key, _)| key.text == table.name).map(|(_, start)| start.si()))
+    let uneven = uneven.is_some() || gaps.is_some() || events > 0;
+    Ok(Clock { times, rate, even, uneven, gaps, zero, starts: 0.0, events })
 }
 
 /// Samples per second of times, two at least.
@@ -279,6 +202,25 @@ fn increasing(
         )),
         None => problem.help("export a record without interruption, or repair its time"),
     })
+}
+
+/// Rows that have the time of the row after them, as simulation programs write an event: before and
+/// after it. The row before comes to the double before that time, so that the later one counts.
+fn events(times: &mut [f64]) -> usize {
+    if rounded(times).is_some() {
+        return 0;
+    }
+    let mut found = 0;
+    let mut later = f64::NAN;
+    for at in (0..times.len()).rev() {
+        let time = times[at];
+        if time == later {
+            times[at] = times[at + 1].next_down();
+            found += 1;
+        }
+        later = time;
+    }
+    found
 }
 
 /// The rate of a record whose stamps are rounded so coarsely that samples have the same one, in Hz:
@@ -431,6 +373,7 @@ mod tests {
             gaps: None,
             zero: Zero::Numbers,
             starts: 0.0,
+            events: 0,
         }
     }
 

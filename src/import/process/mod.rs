@@ -5,6 +5,7 @@
 //! |---|---|
 //! | `recording` | channels in the file, and their units |
 //! | `clock` | time of a table, the grid of a record, resampling |
+//! | `starts` | when the tables of a file start |
 //! | `distance` | distance from a channel, a speed or a trigger; match with the track file |
 //! | `times` | gaps and uneven steps of time; the account of rates |
 //! | `finish` | the record cut to its section, and its last checks |
@@ -14,6 +15,7 @@ mod clock;
 mod distance;
 mod finish;
 mod recording;
+mod starts;
 mod store;
 mod times;
 
@@ -294,7 +296,7 @@ fn clocks(
             wanted[recording.find(&term.name, map.table.as_ref())?.0] = true;
         }
     }
-    clock::clocks(recording, &wanted)
+    starts::clocks(recording, &wanted)
 }
 
 /// The time that all used tables cover.

@@ -102,7 +102,11 @@ impl<'a> Recording<'a> {
         }
         let write = |problem: Problem| {
             let example = wanted.map_or("...", |unit| unit.text.as_str());
-            let (name, from) = (&map.name.value, &name.value);
+            let (name, mut from) = (&map.name.value, name.value.clone());
+            // Within braces, these end a word.
+            if from.contains([',', '[', ']', '{', '}', ':']) {
+                from = format!("\"{from}\"");
+            }
             problem.help(format!("write it: `{name}: {{from: {from}, unit: {example}}}`"))
         };
         if let Some(says) = two_units(channel, self.shown) {
@@ -120,7 +124,17 @@ impl<'a> Recording<'a> {
         let unit = unit.map_err(|unknown| {
             let says =
                 format!("`{}`: the unit `{text}` of `{}` is not known", self.shown, name.value);
-            let near = unknown.near.unwrap_or("...");
+            // Of the dimension that is wanted, or one that is written in another way.
+            let dimension = |text: &str| Unit::parse(text).ok().map(|unit| unit.dimension);
+            let fits = |near: &str| {
+                let found = dimension(near);
+                found.is_some() && wanted.is_some_and(|wanted| found == Some(wanted.dimension))
+            };
+            let powers = text.replace("**", "^");
+            let near = match unknown.near.filter(|near| fits(near)) {
+                _ if dimension(&powers).is_some() => &powers,
+                near => near.unwrap_or("..."),
+            };
             error("unknown-unit", says, &name.span)
                 .help(format!("say what it means: `units: {{\"{text}\": {near}}}`"))
         })?;

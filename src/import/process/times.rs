@@ -188,6 +188,9 @@ pub fn told(recording: &Recording<'_>, sampling: &Sampling, steps: &mut Vec<Stri
             let name = &table.name;
             steps.push(format!("table `{name}` starts {} s after the first", short(starts)));
         }
+        if let Some(events) = clock.as_ref().map(|clock| clock.events).filter(|count| *count > 0) {
+            steps.push(format!("{events} rows have the time of the row after them (events of a simulation), which counts"));
+        }
     }
     let (count, rate, to) = (grid.times.len(), short(base.rate), short(grid.rate));
     steps.push(match (&grid.rows, way(base, true, grid)) {

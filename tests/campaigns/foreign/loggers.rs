@@ -8,18 +8,18 @@ use fishplate::problem::Problems;
 
 const CASES: &str = "tests/cases/foreign";
 
-fn case(name: &str) -> PathBuf {
+pub fn case(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(CASES).join(name)
 }
 
 #[track_caller]
-fn good(name: &str) -> File {
+pub fn good(name: &str) -> File {
     read(&case(name), name, &Options::default())
         .unwrap_or_else(|problems| panic!("{}", Problems(problems).render(false)))
 }
 
 #[track_caller]
-fn channel<'a>(file: &'a File, name: &str) -> &'a Channel {
+pub fn channel<'a>(file: &'a File, name: &str) -> &'a Channel {
     let mut channels = file.tables.iter().flat_map(|table| &table.channels);
     channels.find(|channel| channel.name == name).expect("the channel")
 }
@@ -85,11 +85,11 @@ fn an_unknown_formula_leaves_out_its_channel() {
 }
 
 /// The columns of a record: heading and values.
-type Columns = Vec<(String, Vec<f64>)>;
+pub type Columns = Vec<(String, Vec<f64>)>;
 
 /// Imports a mapping of files of the folder; the record of the only section.
 #[track_caller]
-fn imported(side: &str) -> Columns {
+pub fn imported(side: &str) -> Columns {
     let (problems, record) = tried(side);
     record.unwrap_or_else(|| panic!("{}", problems.render(false)))
 }
@@ -115,7 +115,7 @@ fn tried(side: &str) -> (Problems, Option<Columns>) {
 }
 
 #[track_caller]
-fn refused(side: &str, code: &str) -> String {
+pub fn refused(side: &str, code: &str) -> String {
     let (problems, record) = tried(side);
     let text = problems.render(false);
     assert!(record.is_none() && problems.0[0].code == code, "{text}");

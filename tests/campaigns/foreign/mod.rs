@@ -8,6 +8,7 @@
 mod channels;
 mod damage;
 mod dialects;
+mod exports;
 mod loggers;
 
 use std::path::PathBuf;

@@ -7,7 +7,6 @@ use std::sync::Arc;
 
 use arrow_schema::DataType;
 use bytes::Bytes;
-use parquet::basic::Compression;
 
 use super::{Column, MAGIC, Wanted, find_columns, guard};
 use crate::data::prelude::*;
@@ -214,13 +213,8 @@ impl<'a> Opened<'a> {
         let groups = 0..self.layout.groups().len();
         let other = groups
             .filter_map(|group| Some(self.layout.chunk(group, column.position)?.compression()))
-            .find(|codec| {
-                use Compression::{SNAPPY, UNCOMPRESSED, ZSTD};
-                !matches!(codec, UNCOMPRESSED | SNAPPY | ZSTD(_))
-            })?;
-        let name = other.to_string();
-        let end = name.find(|c: char| !c.is_ascii_alphanumeric() && c != '_');
-        let name = &name[..end.unwrap_or(name.len())];
+            .find(|codec| !guard::is_read(*codec))?;
+        let name = guard::codec_name(other);
         let problem = problem!(
             "format-not-read",
             &self.layout.headings.get(column.position)?.span,
