@@ -6,10 +6,15 @@ mod deviations;
 mod opened;
 mod origin;
 
-use crate::check::plan::{DatumKind, Parameter, Plan, Scalar, SetBy};
-use crate::check::{self, Overrides, diff, family::Family};
-use crate::data::Campaigns;
-use crate::data::hash::{Hasher, sha256};
+use crate::check::{
+    self, Overrides, diff,
+    family::Family,
+    plan::{DatumKind, Parameter, Plan, Scalar, SetBy},
+};
+use crate::data::{
+    Campaigns,
+    hash::{Hasher, sha256},
+};
 use crate::graph::{self, Graph};
 use crate::problem::{Problems, error};
 use crate::result::{

@@ -1,20 +1,18 @@
 //! The files that a result is delivered as: numbers, tables, and the report as PDF and HTML. Each
 //! has its path inside the output folder.
 
-use std::panic::resume_unwind;
-use std::thread;
+use std::{panic::resume_unwind, thread};
 
 use crate::diagnose::Outcome;
 use crate::problem::{Problem, Problems};
-use crate::provenance::carried::{REPORT_HTML, REPORT_PDF};
-use crate::provenance::statement;
-use crate::report::document::Document;
-use crate::report::pdf::Attachment;
-use crate::report::{self, attached, figure, html, tables, typst, view};
-use crate::result::comparison::Comparison;
-use crate::result::impact::Impact;
-use crate::result::study::Study;
-use crate::result::{self, Certification};
+use crate::provenance::{
+    carried::{REPORT_HTML, REPORT_PDF},
+    statement,
+};
+use crate::report::{
+    self, attached, document::Document, figure, html, pdf::Attachment, tables, typst, view,
+};
+use crate::result::{self, Certification, comparison::Comparison, impact::Impact, study::Study};
 
 /// Paths and contents.
 pub type Files = Vec<(String, Vec<u8>)>;

@@ -2,8 +2,7 @@
 
 use std::io::{self, ErrorKind, Read};
 
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
+use base64::{Engine, engine::general_purpose::STANDARD};
 use sha2::{Digest, Sha256};
 
 /// Bytes read at a time; it does not change the result.

@@ -1,7 +1,9 @@
 //! The shipped protocols and catalogues, their editions, and the search for them by name or path.
 
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 use crate::disk;
 use crate::hash::sha256;

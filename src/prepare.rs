@@ -1,16 +1,20 @@
 //! Inputs of an evaluation: campaigns, and a protocol compiled for them. Programs and packages that
 //! evaluate begin here.
 
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 use crate::certify::{Compiled, Opened, Set, compile, overrides, taken_names};
 use crate::check::family::{self, Family};
 use crate::data::{Campaign, Campaigns};
 use crate::diagnose::settings::Settings;
 use crate::effects::{self, Catalogue};
-use crate::import::check::NotWritten;
-use crate::import::mapping::{Mapping, agree};
+use crate::import::{
+    check::NotWritten,
+    mapping::{Mapping, agree},
+};
 use crate::library;
 use crate::problem::{Problem, Problems, all, error};
 use crate::run::{self, find, needs::needs};

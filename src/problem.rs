@@ -1,11 +1,12 @@
 //! Problems of an input: code, place, message, help; collected, and printed in one format.
 
-use std::collections::BTreeSet;
-use std::sync::{Arc, Mutex};
+use std::{
+    collections::BTreeSet,
+    sync::{Arc, Mutex},
+};
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
-use serde::de::Error as _;
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, de::Error as _};
 
 use crate::source::{Located, Member, Span};
 

@@ -2,12 +2,13 @@
 //!
 //! A [`Span`] contains its source, so that a problem can be printed without a table of files.
 
-use std::fmt;
-use std::ops::Range;
-use std::sync::{Arc, OnceLock};
+use std::{
+    fmt,
+    ops::Range,
+    sync::{Arc, OnceLock},
+};
 
-use serde::de::Error as _;
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error as _};
 
 /// One input text: a protocol, a YAML or CSV file, or an excerpt of one.
 pub struct Source {

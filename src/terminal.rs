@@ -1,7 +1,6 @@
 //! Text for a terminal, line by line.
 
-use std::fmt;
-use std::ops::AddAssign;
+use std::{fmt, ops::AddAssign};
 
 use crate::problem::plain;
 

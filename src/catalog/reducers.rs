@@ -2,11 +2,13 @@
 
 use std::fmt;
 
-use crate::metrics::cluster::{mean_interval, standard_deviation_interval};
-use crate::metrics::percentile::{Method, percentile};
-use crate::metrics::sampling::{self, Traits};
-use crate::metrics::statistics::{self, Divisor};
-use crate::metrics::window;
+use crate::metrics::{
+    cluster::{mean_interval, standard_deviation_interval},
+    percentile::{Method, percentile},
+    sampling::{self, Traits},
+    statistics::{self, Divisor},
+    window,
+};
 use crate::units::Dimension;
 
 /// Confidence level of the intervals printed with statistics.

@@ -1,9 +1,10 @@
 //! Steps of a filter chain.
 
-use super::forms::FormPart::{
-    self, Extent, ExtentOrSample, Frequency, FrequencyOrZero, Number, Reducer, Word,
+use super::forms::{
+    Choice, Form,
+    FormPart::{self, Extent, ExtentOrSample, Frequency, FrequencyOrZero, Number, Reducer, Word},
+    NumberOption,
 };
-use super::forms::{Choice, Form, NumberOption};
 use crate::units::Dimension;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,8 +3,11 @@
 
 use std::cell::OnceCell;
 
-use super::forms::FormPart::{self, Frequency, Signal, Word};
-use super::forms::{Form, NumberOption};
+use super::forms::{
+    Form,
+    FormPart::{self, Frequency, Signal, Word},
+    NumberOption,
+};
 use crate::metrics::{coherence, hysteresis, pair};
 use crate::units::Dimension;
 

@@ -4,10 +4,13 @@
 use serde::{Deserialize, Serialize};
 
 use crate::check::plan::Plan;
-use crate::data::campaign::{Fact, ReadFile};
-use crate::data::identification::Stated;
-use crate::data::origin::{ImportedRecord, Origin};
-use crate::data::{Campaigns, qualified};
+use crate::data::{
+    Campaigns,
+    campaign::{Fact, ReadFile},
+    identification::Stated,
+    origin::{ImportedRecord, Origin},
+    qualified,
+};
 use crate::result::{
     CampaignInfo, CampaignMember, DataItem, FileHash, FittedTo, Identification, ImportedOne,
     ImportedSide, OriginInfo, ReportItem,

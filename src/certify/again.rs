@@ -1,14 +1,12 @@
 //! A protocol compiled again from its text and the values of its parameters, as a report or a file
 //! of values carries them.
 
-use std::cell::Cell;
-use std::sync::Arc;
+use std::{cell::Cell, sync::Arc};
 
 use serde::{Deserialize, Serialize};
 
 use super::{Compiled, compile};
-use crate::check::plan::SetBy;
-use crate::check::{Override, Overrides, family};
+use crate::check::{Override, Overrides, family, plan::SetBy};
 use crate::problem::{Problem, Problems};
 use crate::result::{Confirmation, ConfirmedValue, ParameterInfo};
 use crate::source::Source;

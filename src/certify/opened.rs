@@ -1,14 +1,10 @@
 //! The opened inputs of an evaluation.
 
 use super::{Compiled, certify};
-use crate::check::plan::SetBy;
-use crate::check::{Override, Overrides};
-use crate::data::campaign::Confirmed;
-use crate::data::{Campaign, Campaigns};
+use crate::check::{Override, Overrides, plan::SetBy};
+use crate::data::{Campaign, Campaigns, campaign::Confirmed};
 use crate::problem::{Problem, Problems};
-use crate::result::confirmation::Signed;
-use crate::result::found::FoundSections;
-use crate::result::{Certification, Confirmation};
+use crate::result::{Certification, Confirmation, confirmation::Signed, found::FoundSections};
 use crate::run::{Progress, Settings};
 use crate::syntax::document::Text;
 

@@ -1,12 +1,13 @@
 //! Whose protocol it is: shipped with the program, or a text of its own.
 
-use crate::check::diff::{self, Change};
-use crate::check::family::Family;
+use crate::check::{
+    diff::{self, Change},
+    family::Family,
+};
 use crate::library;
 use crate::problem::Problems;
 use crate::result::OwnProtocol;
-use crate::syntax;
-use crate::syntax::document::Text;
+use crate::syntax::{self, document::Text};
 
 /// The shipped names that texts of a protocol give themselves although their content is not the
 /// shipped one.

@@ -1,10 +1,8 @@
 //! Checks what decides between values: `a when b, otherwise c`, and comparisons with words.
 
-use super::conditions::impossible;
-use super::evaluate::words;
-use super::expressions::origin;
-use super::names::bare_word;
-use super::prelude::*;
+use super::{
+    conditions::impossible, evaluate::words, expressions::origin, names::bare_word, prelude::*,
+};
 use crate::syntax::phrase::Number;
 
 impl Checker<'_> {

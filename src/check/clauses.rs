@@ -2,8 +2,7 @@
 
 use indexmap::IndexMap;
 
-use super::plan::Clause;
-use super::prelude::*;
+use super::{plan::Clause, prelude::*};
 
 /// The block of a clause, which is also the field of a rule.
 const CLAUSE: &str = "clause";

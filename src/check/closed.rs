@@ -3,8 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use super::functions::is_signal_function;
-use super::prelude::*;
+use super::{functions::is_signal_function, prelude::*};
 use crate::catalog::{MetricEntry, Reducer, Statistic};
 
 impl Checker<'_> {

@@ -1,11 +1,13 @@
 //! Checks the values of a quantity and how they are compared: what gives its rows.
 
-use super::evaluate::{number, words};
-use super::idle::Pair;
-use super::names::bare_word;
-use super::prelude::*;
-use super::records::Compare;
-use super::steps::after;
+use super::{
+    evaluate::{number, words},
+    idle::Pair,
+    names::bare_word,
+    prelude::*,
+    records::Compare,
+    steps::after,
+};
 use crate::catalog::{Best, DIFFERENCES};
 
 /// The result of checking value and difference, or the metric, of a quantity.

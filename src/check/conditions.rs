@@ -1,8 +1,7 @@
 //! What is known of conditions without a campaign: whether they exclude each other, and whether one
 //! of them always holds.
 
-use super::evaluate::shape;
-use super::prelude::*;
+use super::{evaluate::shape, prelude::*};
 
 /// Largest number of combinations of tests that are examined.
 const MOST: usize = 256;

@@ -1,8 +1,7 @@
 //! Values that a user answers for: those that the protocol marks as `unconfirmed`, and those set in
 //! place of a default. Each is confirmed for one edition of the protocol and for one value.
 
-use super::Overrides;
-use super::prelude::*;
+use super::{Overrides, prelude::*};
 use crate::result::{Confirmation, ConfirmedValue, Remark, StatedValue, Unmatched};
 
 /// The values of a protocol that are to be confirmed, against the confirmations of a campaign.

@@ -1,8 +1,10 @@
 //! Values that are the same whatever the records are: `0 * correlation`.
 
-use super::evaluate::number;
-use super::prelude::*;
-use super::values::{Nothing, Values};
+use super::{
+    evaluate::number,
+    prelude::*,
+    values::{Nothing, Values},
+};
 use crate::metrics::rounded;
 use crate::result::Reason;
 

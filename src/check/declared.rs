@@ -1,12 +1,12 @@
 //! Checks blocks that declare the content of records, of the vehicle file and of the table of
 //! sections: places, data, channels, signals.
 
-use super::names::{Place, Signal};
-use super::positions::joined;
-use super::prelude::*;
-use crate::syntax::families;
-use crate::syntax::is_each;
-use crate::syntax::phrase::Pick;
+use super::{
+    names::{Place, Signal},
+    positions::joined,
+    prelude::*,
+};
+use crate::syntax::{families, is_each, phrase::Pick};
 
 /// Largest number of positions of a place: the wheels of a train of sixty vehicles. A signal at
 /// several places has the product of their numbers.

@@ -2,12 +2,12 @@
 
 use std::cmp::Ordering;
 
-use super::find::AT_MOST;
-use super::overlay::slot;
-use super::prelude::*;
+use super::{find::AT_MOST, overlay::slot, prelude::*};
 use crate::result::Deviation;
-use crate::syntax::keys::{NOT_ASSESSABLE, OPTIONAL};
-use crate::syntax::{keys, same_meaning};
+use crate::syntax::{
+    keys::{self, NOT_ASSESSABLE, OPTIONAL},
+    same_meaning,
+};
 
 /// Rules added, removed or changed from the first document to the second, in the order of the
 /// second.

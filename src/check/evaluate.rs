@@ -2,9 +2,11 @@
 
 use std::ops::RangeInclusive;
 
-use super::possible::possible;
-use super::prelude::*;
-use super::values::{Values, leaf};
+use super::{
+    possible::possible,
+    prelude::*,
+    values::{Values, leaf},
+};
 use crate::result::Reason;
 
 /// The value of an expression. Where names have no value, the result is the value that the

@@ -1,10 +1,12 @@
 //! One walk over phrases that gives typed expressions: of numbers, words and conditions, of values of
 //! a group, and of samples. Where an expression stands decides which names it can use ([`Scope`]).
 
-use super::evaluate::{evaluate, number, shape};
-use super::functions::{function, is_signal_function};
-use super::prelude::*;
-use super::values::Nothing;
+use super::{
+    evaluate::{evaluate, number, shape},
+    functions::{function, is_signal_function},
+    prelude::*,
+    values::Nothing,
+};
 use crate::catalog::Reducer;
 use crate::syntax::phrase::Number;
 

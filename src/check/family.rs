@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use super::like;
-use super::overlay::overlay;
-use super::prelude::*;
+use super::{like, overlay::overlay, prelude::*};
 use crate::source::Source;
-use crate::syntax;
-use crate::syntax::families::Known;
-use crate::syntax::phrase::Limit;
-use crate::syntax::{families, keys};
+use crate::syntax::{
+    self,
+    families::{self, Known},
+    keys,
+    phrase::Limit,
+};
 
 /// The fields of the head that name other texts.
 const EXTENDS: &str = "extends";

@@ -1,9 +1,7 @@
 //! Checks how sections are found in the runs of a campaign: data, conditions, length; and how many
 //! of them are kept.
 
-use super::evaluate::is_whole;
-use super::prelude::*;
-use super::quantities::MOST_COUNTED;
+use super::{evaluate::is_whole, prelude::*, quantities::MOST_COUNTED};
 
 /// What `use` says of sections that are looked for in runs.
 pub const FOUND_SECTIONS: &str = "found sections";

@@ -2,9 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::Overrides;
-use super::names::Names;
-use super::prelude::*;
+use super::{Overrides, names::Names, prelude::*};
 use crate::catalog::{Reducer, Statistic};
 
 /// Better help where the unknown unit after a number is a name, which the parser does not know: `3

@@ -1,8 +1,6 @@
 //! Checks which rows a limit, a minimum or a report is of, and by what keys they form groups.
 
-use super::plan::Scope;
-use super::prelude::*;
-use super::scope::Scope as Names;
+use super::{plan::Scope, prelude::*, scope::Scope as Names};
 use crate::syntax::phrase::Scope as Written;
 
 /// Keys of groups that every campaign has.

@@ -1,8 +1,10 @@
 //! Limits that are not what they seem: they hold, or fail, whatever the values are.
 
-use super::evaluate::{number, words};
-use super::prelude::*;
-use super::values::Values;
+use super::{
+    evaluate::{number, words},
+    prelude::*,
+    values::Values,
+};
 use crate::catalog::Statistic;
 use crate::metrics::rounded;
 use crate::result::Reason;

@@ -1,7 +1,9 @@
 //! Checks ends of confidence intervals, and regressions over the data of sections.
 
-use super::estimates::{bare, reducer_name};
-use super::prelude::*;
+use super::{
+    estimates::{bare, reducer_name},
+    prelude::*,
+};
 use crate::catalog::Statistic;
 use crate::metrics::rounded;
 use crate::syntax::phrase::Fit as WrittenFit;

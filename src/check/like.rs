@@ -1,7 +1,6 @@
 //! A quantity that is like another: its fields are those of the other, with its own over them.
 
-use super::overlay::overlay;
-use super::prelude::*;
+use super::{overlay::overlay, prelude::*};
 
 const LIKE: &str = "like";
 

@@ -1,13 +1,16 @@
 //! Checks limits: statistic, bound, factors, conditions and scope.
 
-use super::evaluate::{number, words};
-use super::groups::Grouped;
-use super::plan::Scope as LimitScope;
-use super::prelude::*;
-use super::references::Limited;
-use super::scope::Bounded;
-use super::values::Nothing;
-use super::{overlap, printed};
+use super::{
+    evaluate::{number, words},
+    groups::Grouped,
+    overlap,
+    plan::Scope as LimitScope,
+    prelude::*,
+    printed,
+    references::Limited,
+    scope::Bounded,
+    values::Nothing,
+};
 use crate::catalog::Best;
 use crate::result::Direction;
 use crate::syntax::phrase::Limit as Written;

@@ -1,14 +1,16 @@
 //! Checks the `metric` of a quantity: a wording of the registry, or an expression of metrics and of
 //! the signals of both sides.
 
-use super::compared::Compared;
-use super::evaluate::is_whole;
-use super::expressions::whole;
-use super::names::bare_word;
-use super::prelude::*;
-use super::scope::Reduce;
-use super::steps::{after, show_number};
-use super::wordings::{fits, item_phrase};
+use super::{
+    compared::Compared,
+    evaluate::is_whole,
+    expressions::whole,
+    names::bare_word,
+    prelude::*,
+    scope::Reduce,
+    steps::{after, show_number},
+    wordings::{fits, item_phrase},
+};
 use crate::catalog::{Asked, Form, FormPart, METRICS, Metric, MetricEntry, Reducer};
 use crate::syntax::phrase::{Item, Step as WrittenStep};
 

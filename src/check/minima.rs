@@ -1,7 +1,6 @@
 //! Checks how many pairs quantities need: in all, and in each group.
 
-use super::groups::Grouped;
-use super::prelude::*;
+use super::{groups::Grouped, prelude::*};
 use crate::syntax::phrase::Scope;
 
 /// The fields `minimum pairs` of a block.

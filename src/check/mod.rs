@@ -70,8 +70,10 @@ pub use overrides::{Override, Overrides};
 
 use crate::problem::{Problem, Problems, error, problem};
 use crate::source::{Span, Spanned};
-use crate::syntax::document::{Block, Document, Field, Text};
-use crate::syntax::from_pest;
+use crate::syntax::{
+    document::{Block, Document, Field, Text},
+    from_pest,
+};
 use crate::units::Dimension;
 use finish::{in_reading_order, name_after_number, rule_count, set_outside, written_rules};
 use groups::Grouped;

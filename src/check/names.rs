@@ -4,8 +4,7 @@
 use indexmap::IndexMap;
 use std::collections::BTreeSet;
 
-use super::prelude::*;
-use super::references::LIMIT;
+use super::{prelude::*, references::LIMIT};
 use crate::catalog::{Reducer, Statistic};
 use crate::syntax::phrase::Alias;
 use crate::units::SYMBOLS;

@@ -1,9 +1,11 @@
 //! Conditions of nearness: `a near b within c` as a comparison, and the two numbers that it
 //! compares.
 
-use super::expressions::{origin, unlike};
-use super::functions::function;
-use super::prelude::*;
+use super::{
+    expressions::{origin, unlike},
+    functions::function,
+    prelude::*,
+};
 
 /// The two numbers that a condition compares: the value, and its target or bound.
 #[derive(Clone, Debug)]

@@ -1,7 +1,6 @@
 //! Checks outcomes in order, of quantities and of verdicts.
 
-use super::plan::Scope as LimitScope;
-use super::prelude::*;
+use super::{plan::Scope as LimitScope, prelude::*};
 use crate::result::{Direction, OUTCOME};
 use crate::syntax::phrase::Outcome;
 

@@ -1,8 +1,6 @@
 //! Finds two limits that apply to the same statistic of a quantity in the same section.
 
-use super::conditions::impossible;
-use super::plan::Scope;
-use super::prelude::*;
+use super::{conditions::impossible, plan::Scope, prelude::*};
 
 /// `zone`: the expression of the zone of a section, where there are zones.
 pub fn find(limits: &[Limit], zone: Option<&Expr>, block: &Block, problems: &mut Problems) {

@@ -1,10 +1,7 @@
 //! Parameters: values from defaults, campaign or command line; numbers that follow from constants
 //! only.
 
-use super::Override;
-use super::evaluate::words;
-use super::names::ParameterDef;
-use super::prelude::*;
+use super::{Override, evaluate::words, names::ParameterDef, prelude::*};
 use crate::syntax::keys::{NOT_ASSESSABLE, NOT_STATED, OPTIONAL};
 use crate::units::number::significant;
 

@@ -2,10 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::names::Signal;
-use super::near::Near;
-use super::prelude::*;
-use super::steps::after;
+use super::{names::Signal, near::Near, prelude::*, steps::after};
 use crate::source::Source;
 
 /// Words of the field `distinct`.

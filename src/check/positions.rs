@@ -3,10 +3,11 @@
 
 use indexmap::IndexMap;
 
-use super::names::Place;
-use super::prelude::*;
-use crate::syntax::is_each;
-use crate::syntax::phrase::{Alias, Pick};
+use super::{names::Place, prelude::*};
+use crate::syntax::{
+    is_each,
+    phrase::{Alias, Pick},
+};
 
 /// Largest number of positions of one quantity. Each is a column of every record and a signal in
 /// memory.

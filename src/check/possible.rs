@@ -5,8 +5,10 @@
 //! (Kleene logic). The bounds are never too narrow. They may be too wide where an unknown name
 //! occurs twice.
 
-use super::prelude::*;
-use super::values::{Values, leaf};
+use super::{
+    prelude::*,
+    values::{Values, leaf},
+};
 use crate::catalog::Function;
 use crate::metrics::statistics::ends;
 use crate::units::raised;

@@ -2,12 +2,10 @@
 
 use std::sync::Arc;
 
-use super::conditions::impossible;
-use super::evaluate::is_whole;
-use super::expressions::whole;
-use super::groups::Grouped;
-use super::prelude::*;
-use super::steps::after;
+use super::{
+    conditions::impossible, evaluate::is_whole, expressions::whole, groups::Grouped, prelude::*,
+    steps::after,
+};
 use crate::catalog::NOT_CHECKED;
 
 /// The largest number that a protocol may require.

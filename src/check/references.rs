@@ -2,12 +2,14 @@
 
 use std::sync::Arc;
 
-use super::estimates::bare;
-use super::evaluate::{number, words};
-use super::plan::Scope as LimitScope;
-use super::prelude::*;
-use super::scope::Bounded;
-use super::values::Values;
+use super::{
+    estimates::bare,
+    evaluate::{number, words},
+    plan::Scope as LimitScope,
+    prelude::*,
+    scope::Bounded,
+    values::Values,
+};
 use crate::metrics::rounded;
 use crate::result::{Direction, OUTCOME, Reason};
 

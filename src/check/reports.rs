@@ -1,10 +1,11 @@
 //! Checks estimates without a limit: what of the values of a quantity, and of the data of the
 //! sections, is printed.
 
-use super::estimates::bare;
-use super::estimates::reducer_name;
-use super::groups::Grouped;
-use super::prelude::*;
+use super::{
+    estimates::{bare, reducer_name},
+    groups::Grouped,
+    prelude::*,
+};
 use crate::catalog::Statistic;
 use crate::syntax::phrase::Report as Written;
 

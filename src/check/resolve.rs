@@ -1,10 +1,7 @@
 //! Resolves the names in expressions by scope: parameters, data, definitions, statistics, values of
 //! signals, and signals themselves.
 
-use super::functions::or_idiom;
-use super::prelude::*;
-use super::scope::Reduce;
-use super::steps::after;
+use super::{functions::or_idiom, prelude::*, scope::Reduce, steps::after};
 use crate::catalog::{
     DIFFERENCES, METRICS, MetricEntry, REDUCERS, Reducer, STATISTICS, Statistic, TOTAL,
 };

@@ -1,9 +1,10 @@
 //! Checks the rules that belong to no quantity: axis, zones, section checks, treatment of sections,
 //! independent units.
 
-use super::find::AT_MOST;
-use super::find::FOUND_SECTIONS;
-use super::prelude::*;
+use super::{
+    find::{AT_MOST, FOUND_SECTIONS},
+    prelude::*,
+};
 use crate::metrics::percentile::Method;
 
 impl Checker<'_> {

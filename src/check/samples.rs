@@ -2,8 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::prelude::*;
-use super::scope::Reduce;
+use super::{prelude::*, scope::Reduce};
 use crate::catalog::{CROSSINGS, LONGEST_RUN, Reducer, SHARE_OF_SAMPLES, TOTAL};
 use crate::syntax::phrase::Counted;
 

@@ -1,10 +1,7 @@
 //! Checks what only expressions over samples have: channels at positions, filters inside
 //! expressions, operations along the axis.
 
-use super::functions::or_idiom;
-use super::names::Signal;
-use super::prelude::*;
-use super::steps::after;
+use super::{functions::or_idiom, names::Signal, prelude::*, steps::after};
 use crate::syntax::phrase::Step as WrittenStep;
 
 impl Checker<'_> {

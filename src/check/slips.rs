@@ -1,8 +1,7 @@
 //! Names in a variant that are one slip away from a name of its parent, and so add something beside
 //! what was to be changed.
 
-use super::Checker;
-use super::family::Family;
+use super::{Checker, family::Family};
 use crate::problem::warning;
 
 /// Names shorter than this differ by one character without a slip: `live`, `alive`.

@@ -1,11 +1,11 @@
 //! Checks filter chains: their steps, and the order of these.
 
-use super::evaluate::is_whole;
-use super::prelude::*;
-use super::wordings::Filled;
+use super::{evaluate::is_whole, prelude::*, wordings::Filled};
 use crate::catalog::{FormPart, InWindow, STEPS, StepEntry, StepKind};
-use crate::metrics::filter::{Band, Cutoff, Phase};
-use crate::metrics::window::{self, Ends};
+use crate::metrics::{
+    filter::{Band, Cutoff, Phase},
+    window::{self, Ends},
+};
 use crate::syntax::phrase::{Item, Step as WrittenStep};
 
 /// Largest number of steps of a chain, including those of the filters that it names. Each is a pass

@@ -1,8 +1,6 @@
 //! Checks the step of a transfer function: poles and zeros of the wording.
 
-use super::prelude::*;
-use super::steps::phase;
-use super::wordings::Filled;
+use super::{prelude::*, steps::phase, wordings::Filled};
 use crate::catalog::{FormPart, StepEntry};
 use crate::metrics::filter::{Roots, TransferFunction, Warping};
 

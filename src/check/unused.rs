@@ -2,11 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use super::Checker;
-use super::family::Family;
+use super::{Checker, family::Family};
 use crate::problem::warning;
-use crate::syntax::document::Block;
-use crate::syntax::keys::{self, Sort};
+use crate::syntax::{
+    document::Block,
+    keys::{self, Sort},
+};
 
 /// What is there to be used by other rules.
 const NAMED: [&str; 3] = ["parameter", "define", "estimate"];

@@ -2,9 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use super::evaluate::is_whole;
-use super::outcomes::{NEITHER, bare, ends, outcomes_told, says_passed};
-use super::prelude::*;
+use super::{
+    evaluate::is_whole,
+    outcomes::{NEITHER, bare, ends, outcomes_told, says_passed},
+    prelude::*,
+};
 use crate::syntax::phrase::{Needed, Outcome, OverVerdicts, Verdict as Written};
 
 /// Words of the verdict without a name.

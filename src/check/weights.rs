@@ -1,8 +1,10 @@
 //! Checks weights, and numbers of several groups: `mean weighted by length`, `mean of (mean for
 //! each zone)`.
 
-use super::estimates::{has_weights, reducer_name};
-use super::prelude::*;
+use super::{
+    estimates::{has_weights, reducer_name},
+    prelude::*,
+};
 
 impl Checker<'_> {
     /// `mean weighted by length`, `share weighted by length where value <= 60 kN`.

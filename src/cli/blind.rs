@@ -1,22 +1,22 @@
 //! `blind`: diagnoses every campaign first, then reads the truths and scores the answers.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{
+    Mutex, PoisonError,
+    atomic::{AtomicUsize, Ordering},
+};
 
 use rayon::prelude::*;
 
-use super::diagnose::Asked;
-use super::kit::*;
-use super::simulate::load_catalogue;
+use super::{diagnose::Asked, kit::*, simulate::load_catalogue};
 use crate::data::campaign::CAMPAIGN_FILE;
-use crate::diagnose::score::{Truth, blind, case};
-use crate::diagnose::settings::Settings;
-use crate::diagnose::{Outcome, Really, effect_of_truth};
+use crate::diagnose::{
+    Outcome, Really, effect_of_truth,
+    score::{Truth, blind, case},
+    settings::Settings,
+};
 use crate::effects::Catalogue;
-use crate::report::blind as report;
-use crate::report::html;
-use crate::result::blind::Case;
-use crate::result::text;
+use crate::report::{blind as report, html};
+use crate::result::{blind::Case, text};
 
 /// Maximum size of a truth file in bytes.
 const LARGEST_TRUTH: u64 = 1 << 20;

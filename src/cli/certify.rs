@@ -1,7 +1,6 @@
 //! `certify`: evaluates a protocol on a campaign and writes the report.
 
-use super::kit::*;
-use super::report::Report;
+use super::{kit::*, report::Report};
 
 #[derive(Debug, Args)]
 pub struct Certify {

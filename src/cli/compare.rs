@@ -1,8 +1,6 @@
 //! `compare`: protocols side by side over campaigns.
 
-use super::kit::*;
-use super::study::told;
-use super::values::numbers;
+use super::{kit::*, study::told, values::numbers};
 use crate::compare::{Prepared, SIZES, Settings};
 use crate::deliver::{self, Reports};
 use crate::prepare::set_by_hand;

@@ -4,13 +4,12 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::inputs::{start_jobs, with_protocols};
-use super::output::{Console, Done, Ended, Exit};
-use super::places::{CAMPAIGN, check_folder};
-use crate::data::Campaign;
-use crate::data::conversion::convert;
-use crate::data::record::Format;
-use crate::data::write::Outputs;
+use super::{
+    inputs::{start_jobs, with_protocols},
+    output::{Console, Done, Ended, Exit},
+    places::{CAMPAIGN, check_folder},
+};
+use crate::data::{Campaign, conversion::convert, record::Format, write::Outputs};
 use crate::disk::SetKind;
 use crate::problem::Problems;
 

@@ -3,17 +3,23 @@
 
 use indicatif::ProgressBar;
 
-use super::kit::*;
-use super::of_runs::WithFiles;
-use super::simulator::{Chosen, SimulatorChoice};
+use super::{
+    kit::*,
+    of_runs::WithFiles,
+    simulator::{Chosen, SimulatorChoice},
+};
 use crate::certify::Compiled;
 use crate::data::hash::sha256;
 use crate::deliver::{self, Reports};
-use crate::diagnose::answer::verdict::remark;
-use crate::diagnose::inputs::{Inputs, Reference};
-use crate::diagnose::preflight::{Preflight, preflight};
-use crate::diagnose::settings::Settings;
-use crate::diagnose::{Cache, Outcome, diagnose, write_improved};
+use crate::diagnose::{
+    Cache, Outcome,
+    answer::verdict::remark,
+    diagnose,
+    inputs::{Inputs, Reference},
+    preflight::{Preflight, preflight},
+    settings::Settings,
+    write_improved,
+};
 use crate::effects::Catalogue;
 use crate::prepare::for_diagnosis;
 use crate::problem::Severity;

@@ -2,8 +2,7 @@
 
 use std::fmt::Write;
 
-use super::kit::*;
-use super::simulate::load_catalogue;
+use super::{kit::*, simulate::load_catalogue};
 use crate::effects::{Action, Catalogue};
 use crate::yaml::Words;
 

@@ -1,12 +1,13 @@
 //! `exercise`: two campaigns for each limit of a protocol, inside and outside of it.
 
-use super::inputs::compiled_for;
-use super::kit::*;
+use super::{inputs::compiled_for, kit::*};
 use crate::certify::Opened;
 use crate::exercise::{Mutate, complete, exercise, limits_of};
 use crate::report::number::significant;
-use crate::result;
-use crate::result::exercise::{self as found, Disturbance, Mutated, NoPair, Over, Pair, Shape};
+use crate::result::{
+    self,
+    exercise::{self as found, Disturbance, Mutated, NoPair, Over, Pair, Shape},
+};
 
 /// The numbers of what was made.
 const FILE: &str = "exercise.json";

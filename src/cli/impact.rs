@@ -1,8 +1,6 @@
 //! `impact`: what the change of a protocol would have decided over an archive of campaigns.
 
-use super::kit::*;
-use super::reduce::opened;
-use super::study::told;
+use super::{kit::*, reduce::opened, study::told};
 use crate::deliver::{self, Reports};
 use crate::impact::{Archive, Prepared};
 use crate::prepare::set_by_hand;

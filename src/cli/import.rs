@@ -2,15 +2,18 @@
 
 use super::kit::*;
 use crate::certify::{Compiled, certify, compile};
-use crate::check::Overrides;
-use crate::check::plan::{Plan, Side};
-use crate::import::draft::{With, draft, groups, relative_to};
-use crate::import::mapping::{self, Mapping, Paths};
+use crate::check::{
+    Overrides,
+    plan::{Plan, Side},
+};
+use crate::import::{
+    draft::{With, draft, groups, relative_to},
+    mapping::{self, Mapping, Paths},
+};
 use crate::prepare::for_import;
 use crate::report::findings;
 use crate::result::Finding;
-use crate::run::needs::needs;
-use crate::run::{Settings, consequence, find};
+use crate::run::{Settings, consequence, find, needs::needs};
 use crate::source::{Source, Spanned};
 use crate::words;
 

@@ -2,14 +2,18 @@
 
 use std::sync::Arc;
 
-use super::kit::*;
-use super::scaffold::{Scaffold, scaffold};
+use super::{
+    kit::*,
+    scaffold::{Scaffold, scaffold},
+};
 use crate::check::{self, Overrides, family::Family};
 use crate::data::record::{listed_headings, read_headings};
 use crate::graph;
-use crate::init::channels::{Listed, channels, listed};
-use crate::init::protocol::Parent;
-use crate::init::{File, campaign, protocol};
+use crate::init::{
+    File, campaign,
+    channels::{Listed, channels, listed},
+    protocol::{self, Parent},
+};
 use crate::prepare;
 use crate::run::needs;
 use crate::source::Source;

@@ -1,11 +1,15 @@
 //! Common inputs of the subcommands that evaluate a protocol on a campaign.
 
-use std::error::Error;
-use std::num::NonZeroUsize;
-use std::path::{Path, PathBuf};
+use std::{
+    error::Error,
+    num::NonZeroUsize,
+    path::{Path, PathBuf},
+};
 
-use super::output::Ended;
-use super::places::{REPORT, check_folder, check_not_input, check_out};
+use super::{
+    output::Ended,
+    places::{REPORT, check_folder, check_not_input, check_out},
+};
 use crate::data::Campaign;
 pub use crate::prepare::{compiled_for, opened_all, prepare, prepare_all, with_protocols};
 use crate::problem::{Problem, Problems};

@@ -1,10 +1,11 @@
 //! `new`: a campaign of any machine from simulated and measured records.
 
-use super::kit::*;
-use super::scaffold::{Scaffold, scaffold};
+use super::{
+    kit::*,
+    scaffold::{Scaffold, scaffold},
+};
 use crate::check::{self, Overrides};
-use crate::new::records::Pair;
-use crate::new::{DOMAINS, Made, PROTOCOL_FILE, files};
+use crate::new::{DOMAINS, Made, PROTOCOL_FILE, files, records::Pair};
 use crate::prepare;
 use crate::source::Source;
 

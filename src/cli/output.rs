@@ -1,7 +1,9 @@
 //! Terminal output and exit codes.
 
-use std::io::{IsTerminal, Write};
-use std::path::Path;
+use std::{
+    io::{IsTerminal, Write},
+    path::Path,
+};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 

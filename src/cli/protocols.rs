@@ -1,10 +1,14 @@
 //! Subcommands for protocol texts.
 
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
-use super::output::{Console, Done, Exit};
-use super::places::{check_file, check_out};
+use super::{
+    output::{Console, Done, Exit},
+    places::{check_file, check_out},
+};
 use crate::check::{self, Overrides};
 use crate::disk::SetKind;
 use crate::library;

@@ -1,8 +1,7 @@
 //! `reduce`: evaluates a part of the sections of a campaign to a file of values; `judge`: the
 //! report from such files.
 
-use super::kit::*;
-use super::report::Report;
+use super::{kit::*, report::Report};
 use crate::run::{SectionValues, Shard};
 use crate::values::{self, Joined, ReduceJob, Values};
 

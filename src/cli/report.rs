@@ -1,14 +1,17 @@
 //! The files of a report and its summary, of `certify` and of `judge`.
 
-use super::kit::*;
-use super::sign;
+use super::{kit::*, sign};
 use crate::deliver::{self, Reports};
 use crate::disk::SIGNATURE;
-use crate::provenance::carried::REPORT_PDF;
-use crate::provenance::signature::{self, SecretKey, secret_key};
-use crate::provenance::statement;
-use crate::report::estimates::{self, OfLimit};
-use crate::report::{findings, number, rules};
+use crate::provenance::{
+    carried::REPORT_PDF,
+    signature::{self, SecretKey, secret_key},
+    statement,
+};
+use crate::report::{
+    estimates::{self, OfLimit},
+    findings, number, rules,
+};
 use crate::result::{Certification, QuantityResult, Reason, StatisticResult, Verdict};
 use crate::run::Settings;
 use crate::words;

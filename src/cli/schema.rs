@@ -4,13 +4,10 @@ use clap::ValueEnum;
 use schemars::{JsonSchema, generate::SchemaSettings};
 
 use super::output::{Console, Done};
-use crate::result::blind::Blind;
-use crate::result::comparison::Comparison;
-use crate::result::diagnosis::Diagnosis;
-use crate::result::exercise::Exercise;
-use crate::result::impact::Impact;
-use crate::result::study::Study;
-use crate::result::{self, Certification};
+use crate::result::{
+    self, Certification, blind::Blind, comparison::Comparison, diagnosis::Diagnosis,
+    exercise::Exercise, impact::Impact, study::Study,
+};
 use crate::syntax;
 
 /// What a schema is of.

@@ -2,12 +2,13 @@
 
 use std::fmt::Write;
 
-use super::inputs::compiled_for;
-use super::kit::*;
+use super::{inputs::compiled_for, kit::*};
 use crate::certify::Opened;
 use crate::data::cut::cut;
-use crate::report::found::{drift_in_words, in_words};
-use crate::report::number::count;
+use crate::report::{
+    found::{drift_in_words, in_words},
+    number::count,
+};
 use crate::result::found::FoundSections;
 use crate::run::find;
 

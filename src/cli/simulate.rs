@@ -2,12 +2,16 @@
 
 use rayon::prelude::*;
 
-use super::kit::*;
-use super::of_runs::WithFiles;
-use super::simulator::{Chosen, SimulatorChoice, all};
+use super::{
+    kit::*,
+    of_runs::WithFiles,
+    simulator::{Chosen, SimulatorChoice, all},
+};
 use crate::effects::{self, Applied, Catalogue};
-use crate::model::CHANNELS;
-use crate::model::integrate::{MOST_STEPS, Method, SAMPLE, Steps};
+use crate::model::{
+    CHANNELS,
+    integrate::{MOST_STEPS, Method, SAMPLE, Steps},
+};
 pub use crate::prepare::load_catalogue;
 use crate::simulate::{
     Deviation, Made, Plan, Section, check_confined, effects_of_origin, record_file, sections,

@@ -1,9 +1,11 @@
 //! Records imported again from their sources, for `verify --sources`.
 
 use super::kit::*;
-use crate::data::campaign::CAMPAIGN_FILE;
-use crate::data::fingerprint::{fingerprint, of_file};
-use crate::data::origin::ORIGIN_FILE;
+use crate::data::{
+    campaign::CAMPAIGN_FILE,
+    fingerprint::{fingerprint, of_file},
+    origin::ORIGIN_FILE,
+};
 use crate::import::mapping::{self, Paths};
 use crate::prepare::for_import;
 use crate::provenance::verify::{Check, lines};

@@ -3,13 +3,13 @@
 
 use clap::Subcommand;
 
-use super::kit::*;
-use super::reduce::joined;
-use super::values::{numbers, values};
+use super::{
+    kit::*,
+    reduce::joined,
+    values::{numbers, values},
+};
 use crate::deliver::{self, Reports};
-use crate::report::document::Fact;
-use crate::report::study as report;
-use crate::report::view::Opening;
+use crate::report::{document::Fact, study as report, view::Opening};
 use crate::result::study as found;
 use crate::robustness::{self, Asked, Margins, Settings, Synchronisation, Vary};
 use crate::study;

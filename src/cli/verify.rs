@@ -1,13 +1,14 @@
 //! `fishplate verify` and `fishplate trace`.
 
-use super::kit::*;
-use super::sources::imported_again;
+use super::{kit::*, sources::imported_again};
 use crate::check::family::Family;
 use crate::deliver::{self, Reports};
-use crate::provenance::carried::{self, Carried};
-use crate::provenance::signature;
-use crate::provenance::trace::{Asked, trace};
-use crate::provenance::verify::{Again, Check, Outcome, against, alone, of_as_many};
+use crate::provenance::{
+    carried::{self, Carried},
+    signature,
+    trace::{Asked, trace},
+    verify::{Again, Check, Outcome, against, alone, of_as_many},
+};
 use crate::report::visible::visible;
 use crate::result::Certification;
 

@@ -4,8 +4,10 @@ use indexmap::IndexSet;
 
 use super::found::CampaignComparison;
 use crate::metrics::rank::spearman;
-use crate::result::Reason;
-use crate::result::comparison::{Agreement, Cell, Score};
+use crate::result::{
+    Reason,
+    comparison::{Agreement, Cell, Score},
+};
 
 /// Every pair of protocols, then every pair of metrics of each protocol.
 pub fn agreement(names: &[&str], found: &[CampaignComparison]) -> Vec<Agreement> {

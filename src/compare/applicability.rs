@@ -1,11 +1,15 @@
 //! What a metric can be applied to, found by trying: one quantity, one section, doubled and
 //! exchanged records.
 
-use super::found::{Base, CampaignComparison};
-use super::metric;
+use super::{
+    found::{Base, CampaignComparison},
+    metric,
+};
 use crate::check::plan::Plan;
-use crate::result::comparison::{Applicability, Tried};
-use crate::result::{PairValue, QuantityResult, Verdict};
+use crate::result::{
+    PairValue, QuantityResult, Verdict,
+    comparison::{Applicability, Tried},
+};
 use crate::run::{Evaluated, Judged};
 
 /// Values are the same, or twice as large, to this share of the largest: the rounding of filters

@@ -3,21 +3,25 @@
 use indexmap::IndexMap;
 use rayon::prelude::*;
 
-use super::applicability;
-use super::found::{Base, CampaignComparison, Judgement, Moved};
-use super::metric;
-use super::sensitivity;
-use super::subject::WithProtocols;
-use super::{KINDS, Settings};
+use super::{
+    KINDS, Settings, applicability,
+    found::{Base, CampaignComparison, Judgement, Moved},
+    metric, sensitivity,
+    subject::WithProtocols,
+};
 use crate::certify::Compiled;
 use crate::check::plan::Decision;
 use crate::data::Campaign;
 use crate::problem::{Problems, Severity};
-use crate::result::comparison::{Applicability, Cell, Ratio, Score};
-use crate::result::{FileHash, Outcome, Reason, Verdict};
-use crate::run::several::{Rules, several};
-use crate::run::trial::Trial;
-use crate::run::{Evaluated, Progress, file_hash};
+use crate::result::{
+    FileHash, Outcome, Reason, Verdict,
+    comparison::{Applicability, Cell, Ratio, Score},
+};
+use crate::run::{
+    Evaluated, Progress, file_hash,
+    several::{Rules, several},
+    trial::Trial,
+};
 
 impl<'a> Base<'a> {
     /// # Errors

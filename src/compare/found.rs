@@ -2,8 +2,10 @@
 
 use super::metric::Number;
 use crate::check::plan::Plan;
-use crate::result::comparison::{Applicability, Cell, Ratio, Score};
-use crate::result::{FileHash, Reason};
+use crate::result::{
+    FileHash, Reason,
+    comparison::{Applicability, Cell, Ratio, Score},
+};
 use crate::run::{Counts, Evaluated, Judged};
 
 /// What all protocols made of a campaign.

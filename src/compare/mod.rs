@@ -56,15 +56,17 @@ mod sensitivity;
 mod subject;
 
 use crate::certify::{Compiled, Set, protocol_info};
-use crate::check::diff::Change;
-use crate::check::family::Family;
+use crate::check::{diff::Change, family::Family};
 use crate::data::Campaign;
 use crate::problem::{Problems, all};
-use crate::result::comparison::{Compared, Comparison, OnCampaign, Work};
-use crate::result::{FORMAT, THIS};
-use crate::run::find;
-use crate::run::trial::{Disturbance, Kind, Trial};
-use crate::run::{Counts, Progress};
+use crate::result::{
+    FORMAT, THIS,
+    comparison::{Compared, Comparison, OnCampaign, Work},
+};
+use crate::run::{
+    Counts, Progress, find,
+    trial::{Disturbance, Kind, Trial},
+};
 use subject::{Subject, WithProtocols};
 
 pub use rules::{ALL, related};

@@ -1,11 +1,17 @@
 //! What differs between two protocols, and what each difference does to the verdict by itself.
 
-use super::found::{CampaignComparison, Judgement};
-use super::subject::{Subject, WithProtocols};
-use crate::check::diff::{self, Change};
-use crate::check::family::Family;
-use crate::result::Reason;
-use crate::result::comparison::{Difference, Ratio};
+use super::{
+    found::{CampaignComparison, Judgement},
+    subject::{Subject, WithProtocols},
+};
+use crate::check::{
+    diff::{self, Change},
+    family::Family,
+};
+use crate::result::{
+    Reason,
+    comparison::{Difference, Ratio},
+};
 
 /// The differences from one protocol to another.
 pub fn changes(before: &Subject, after: &Subject) -> Vec<Change> {

@@ -4,13 +4,16 @@ use std::collections::BTreeSet;
 
 use indexmap::IndexSet;
 
-use super::found::{Base, CampaignComparison, Moved, OfMetric};
-use super::metric::{self, Number};
-use super::{KINDS, Settings};
-use crate::metrics::disturb::stream;
-use crate::metrics::random::mixed;
-use crate::result::Reason;
-use crate::result::comparison::{OfCampaign, Sensitivity};
+use super::{
+    KINDS, Settings,
+    found::{Base, CampaignComparison, Moved, OfMetric},
+    metric::{self, Number},
+};
+use crate::metrics::{disturb::stream, random::mixed};
+use crate::result::{
+    Reason,
+    comparison::{OfCampaign, Sensitivity},
+};
 use crate::run::Evaluated;
 
 /// Choices of sections drawn for each size. The rms of a change over this many draws is known to

@@ -4,9 +4,7 @@ use std::sync::Arc;
 
 use super::Settings;
 use crate::certify::{Compiled, Set, compile, overrides};
-use crate::check::Overrides;
-use crate::check::diff::Change;
-use crate::check::family::Family;
+use crate::check::{Overrides, diff::Change, family::Family};
 use crate::data::Campaign;
 use crate::problem::{Problem, Problems, Severity};
 

@@ -1,7 +1,9 @@
 //! A long record, block by block: a thread reads ahead of the one that asks.
 
-use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
-use std::thread;
+use std::{
+    sync::mpsc::{Receiver, SyncSender, sync_channel},
+    thread,
+};
 
 use super::record::{Block, Known, RecordSource, Wanted};
 use crate::problem::Problem;

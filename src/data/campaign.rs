@@ -14,8 +14,7 @@ mod runs;
 mod tolerances;
 mod uncertainty;
 
-use std::path::Path;
-use std::sync::Arc;
+use std::{path::Path, sync::Arc};
 
 pub use confirmed::Confirmed;
 pub use facts::Fact;
@@ -28,12 +27,14 @@ pub use runs::{OnDrift, RUN_COLUMN, RUNS, Run, RunFact, RunStretch};
 pub use uncertainty::{Size, UNCERTAINTY, Uncertainty};
 
 pub use super::folder::Memory;
-use super::folder::{Folder, check_file_name};
-use super::identification::{Report, Stated};
-use super::origin::Origin;
-use super::place::CampaignPath;
-use super::record::Format;
-use super::table::{Cell, Table};
+use super::{
+    folder::{Folder, check_file_name},
+    identification::{Report, Stated},
+    origin::Origin,
+    place::CampaignPath,
+    record::Format,
+    table::{Cell, Table},
+};
 use crate::data::prelude::*;
 use layout::{Edited, Layout};
 use members::RecordFolder;

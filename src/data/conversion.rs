@@ -2,13 +2,15 @@
 
 use std::collections::BTreeSet;
 
-use super::campaign::{CAMPAIGN_FILE, RUNS};
-use super::hash::sha256;
-use super::origin::{ORIGIN_FILE, ORIGIN_KEY};
-use super::record::{Format, read_raw};
-use super::text::read_any;
-use super::write::{Entry, Outputs, campaign_yaml, campaign_yaml_with, in_format, table_csv};
-use super::{Campaign, RecordKind};
+use super::{
+    Campaign, RecordKind,
+    campaign::{CAMPAIGN_FILE, RUNS},
+    hash::sha256,
+    origin::{ORIGIN_FILE, ORIGIN_KEY},
+    record::{Format, read_raw},
+    text::read_any,
+    write::{Entry, Outputs, campaign_yaml, campaign_yaml_with, in_format, table_csv},
+};
 use crate::data::prelude::*;
 
 /// The key of `campaign.yaml` that names the table of converted records.

@@ -1,12 +1,14 @@
 //! A copy of a campaign in which each section has records of its own, cut from the runs.
 
-use super::campaign::{CAMPAIGN_FILE, RUN_COLUMN, RUNS, Run, RunStretch};
-use super::hash::sha256;
-use super::origin::{ORIGIN_FILE, ORIGIN_KEY};
-use super::record::{Column, Format, Record, Wanted};
-use super::table::{Cell, Table};
-use super::write::{Entry, FileColumn, Outputs, Values, campaign_yaml_with, in_format, table_csv};
-use super::{Campaign, RecordKind};
+use super::{
+    Campaign, RecordKind,
+    campaign::{CAMPAIGN_FILE, RUN_COLUMN, RUNS, Run, RunStretch},
+    hash::sha256,
+    origin::{ORIGIN_FILE, ORIGIN_KEY},
+    record::{Column, Format, Record, Wanted},
+    table::{Cell, Table},
+    write::{Entry, FileColumn, Outputs, Values, campaign_yaml_with, in_format, table_csv},
+};
 use crate::data::prelude::*;
 use crate::units::number::significant;
 

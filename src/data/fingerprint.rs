@@ -2,9 +2,7 @@
 
 use std::path::Path;
 
-use super::folder::Folder;
-use super::hash::Hasher;
-use super::text::unreadable;
+use super::{folder::Folder, hash::Hasher, text::unreadable};
 use crate::data::prelude::*;
 use crate::disk::{self, Kind};
 

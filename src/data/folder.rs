@@ -1,12 +1,16 @@
 //! The folder of a campaign; no path in the campaign may lead out of it.
 
-use std::collections::BTreeMap;
-use std::path::{Component, Path, PathBuf};
-use std::sync::Arc;
+use std::{
+    collections::BTreeMap,
+    path::{Component, Path, PathBuf},
+    sync::Arc,
+};
 
-use super::place::CampaignPath;
-use super::record::Frame;
-use super::text::{read_any, read_small, text_of, unreadable};
+use super::{
+    place::CampaignPath,
+    record::Frame,
+    text::{read_any, read_small, text_of, unreadable},
+};
 use crate::data::prelude::*;
 use crate::problem::nearest;
 

@@ -34,9 +34,11 @@ pub use stretch::{Block, Run};
 
 use std::path::Path;
 
-use super::cells::{self, Heading};
-use super::faults::Faults;
-use super::text::empty;
+use super::{
+    cells::{self, Heading},
+    faults::Faults,
+    text::empty,
+};
 use crate::data::prelude::*;
 
 /// A column requested by the caller.

@@ -1,10 +1,11 @@
 //! A small CSV table such as `sections.csv`: named rows, and cells with their places.
 
-use std::collections::HashMap;
-use std::sync::Arc;
+use std::{collections::HashMap, sync::Arc};
 
-use super::cells::{self, Heading};
-use super::faults::Faults;
+use super::{
+    cells::{self, Heading},
+    faults::Faults,
+};
 use crate::data::prelude::*;
 
 /// A table with the same number of cells in every row, and a name per row if it was read with a

@@ -1,9 +1,11 @@
 //! Reads the text of a file: readable, not empty, UTF-8.
 
-use std::fmt::Display;
-use std::io::{BufRead, BufReader, ErrorKind, Read};
-use std::path::Path;
-use std::sync::Arc;
+use std::{
+    fmt::Display,
+    io::{BufRead, BufReader, ErrorKind, Read},
+    path::Path,
+    sync::Arc,
+};
 
 use super::hash::sha256;
 use crate::data::prelude::*;

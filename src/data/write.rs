@@ -11,8 +11,10 @@ pub use format::{
     record, record_csv, table_csv, yaml_text,
 };
 
-use std::io;
-use std::path::{Path, PathBuf};
+use std::{
+    io,
+    path::{Path, PathBuf},
+};
 
 use crate::disk::{self, ScratchFile, Set, SetKind};
 use crate::problem::{Problem, problem};

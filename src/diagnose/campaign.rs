@@ -9,17 +9,15 @@ use super::inputs::Inputs;
 use super::run::{Found, find};
 use super::settings::Settings;
 use crate::certify::{Compiled, certify};
-use crate::data::Campaign;
-use crate::data::origin::OriginEffect;
-use crate::data::record::Format;
-use crate::data::write::Outputs;
+use crate::data::{Campaign, origin::OriginEffect, record::Format, write::Outputs};
 use crate::diagnose::linearise::whiten::{dot, less};
-use crate::diagnose::observe::observations::Observations;
-use crate::diagnose::observe::observed::Observed;
+use crate::diagnose::observe::{observations::Observations, observed::Observed};
 use crate::effects::{Applied, Catalogue, Gauss, Signals};
 use crate::problem::{Problem, Problems};
-use crate::result::diagnosis::{Diagnosis, HeldOut as OnHeldOut};
-use crate::result::{Certification, Reason};
+use crate::result::{
+    Certification, Reason,
+    diagnosis::{Diagnosis, HeldOut as OnHeldOut},
+};
 use crate::run::Settings as RunSettings;
 use crate::simulate::{
     Made, Section, Simulator, Units, effects_of_origin, record_file, recorded, with_records,

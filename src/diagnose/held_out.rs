@@ -1,7 +1,6 @@
 //! Sections that the fit never sees: `held out: run = P` in `campaign.yaml`.
 
-use crate::data::Campaign;
-use crate::data::campaign::Fact;
+use crate::data::{Campaign, campaign::Fact};
 use crate::problem::Problem;
 use crate::simulate::Section;
 

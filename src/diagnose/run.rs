@@ -6,26 +6,33 @@ use rayon::prelude::*;
 
 use super::inputs::{Inputs, value_of};
 use super::settings::Settings;
-use crate::diagnose::checks::channels::{Lack, lack_of_fit};
-use crate::diagnose::checks::further::{Further, free, used};
-use crate::diagnose::checks::heterogeneity::{Heterogeneity, heterogeneity, views};
-use crate::diagnose::checks::stability::{Stability, stability};
-use crate::diagnose::fit::fitter::{Fitted, Fitter};
-use crate::diagnose::fit::set::{Bars, Chosen, Refused, chi_squared};
-use crate::diagnose::iterate::point::{Linearisation, Linearise};
-use crate::diagnose::iterate::{Iterate, Iterated};
+use crate::diagnose::checks::{
+    channels::{Lack, lack_of_fit},
+    further::{Further, free, used},
+    heterogeneity::{Heterogeneity, heterogeneity, views},
+    stability::{Stability, stability},
+};
+use crate::diagnose::fit::{
+    fitter::{Fitted, Fitter},
+    set::{Bars, Chosen, Refused, chi_squared},
+};
+use crate::diagnose::iterate::{
+    Iterate, Iterated,
+    point::{Linearisation, Linearise},
+};
 use crate::diagnose::levels::search::TRIED;
-use crate::diagnose::linearise::candidate::Candidate;
-use crate::diagnose::linearise::covariance::{Sensitivity, covariance};
-use crate::diagnose::linearise::declared::Declared;
-use crate::diagnose::linearise::ground::{Ground, bench};
-use crate::diagnose::linearise::mask::{Mask, masks};
-use crate::diagnose::linearise::whiten::{Covariance, Whitener, dot, less};
-use crate::diagnose::linearise::workshop::Workshop;
-use crate::diagnose::observe::bench::Runs;
-use crate::diagnose::observe::observations::Observations;
-use crate::diagnose::observe::observed::Observed;
-use crate::diagnose::observe::strata::strata;
+use crate::diagnose::linearise::{
+    candidate::Candidate,
+    covariance::{Sensitivity, covariance},
+    declared::Declared,
+    ground::{Ground, bench},
+    mask::{Mask, masks},
+    whiten::{Covariance, Whitener, dot, less},
+    workshop::Workshop,
+};
+use crate::diagnose::observe::{
+    bench::Runs, observations::Observations, observed::Observed, strata::strata,
+};
 use crate::diagnose::search::{Search, without};
 use crate::effects::{Action, Applied, Signals};
 use crate::model::parameter;

@@ -8,9 +8,11 @@ use crate::diagnose::levels::score::DETECTABLE;
 use crate::diagnose::observe::observed::Observed;
 use crate::effects::{Action, Applied, CHANNEL, Catalogue, Confined};
 use crate::metrics::interval::wilson;
-use crate::result::blind::{Blind, BySize, Calibration, Case, Places, Score};
-use crate::result::diagnosis::{Cause, Diagnosis, NamedEffect};
-use crate::result::{FORMAT, THIS};
+use crate::result::{
+    FORMAT, THIS,
+    blind::{Blind, BySize, Calibration, Case, Places, Score},
+    diagnosis::{Cause, Diagnosis, NamedEffect},
+};
 
 /// One effect of a truth.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,11 +1,15 @@
 //! Test hook that lets file operations fail. Without a hook, each operation costs one read of a
 //! flag.
 
-use std::fmt::Debug;
-use std::io;
-use std::path::Path;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::{
+    fmt::Debug,
+    io,
+    path::Path,
+    sync::{
+        Arc, Mutex, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
+};
 
 /// Operations that can fail.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -1,8 +1,10 @@
 //! Journal of a set of files: written before the commit point, and read by the next run if a run
 //! was interrupted after it.
 
-use std::io;
-use std::path::{Component, Path};
+use std::{
+    io,
+    path::{Component, Path},
+};
 
 /// Name of the journal next to the files that are not in their places yet.
 pub const JOURNAL: &str = "journal";

@@ -16,10 +16,12 @@ mod journal;
 mod set;
 mod single;
 
-use std::ffi::OsString;
-use std::fs::{self, File};
-use std::io::{self, ErrorKind, Read, Seek, SeekFrom, Write};
-use std::path::{Path, PathBuf};
+use std::{
+    ffi::OsString,
+    fs::{self, File},
+    io::{self, ErrorKind, Read, Seek, SeekFrom, Write},
+    path::{Path, PathBuf},
+};
 
 use faults::{Op, pass, passed};
 pub use set::{SIGNATURE, Set, SetKind, UNFINISHED};

@@ -6,14 +6,17 @@
 //! interrupted in between is completed by the next one. Old and new files are never mixed: first
 //! only old files are in place, then only new ones.
 
-use std::collections::HashSet;
-use std::io::{self, ErrorKind, Write};
-use std::path::{Path, PathBuf};
+use std::{
+    collections::HashSet,
+    io::{self, ErrorKind, Write},
+    path::{Path, PathBuf},
+};
 
-use super::journal::{JOURNAL, Journal, plain};
 use super::{
-    Hold, Kind, ScratchFile, Writer, create, hold, is_file, is_folder, is_link, kind, make_folders,
-    names, read, remove_file, remove_folder, rename, sync_folder, sync_together,
+    Hold, Kind, ScratchFile, Writer, create, hold, is_file, is_folder, is_link,
+    journal::{JOURNAL, Journal, plain},
+    kind, make_folders, names, read, remove_file, remove_folder, rename, sync_folder,
+    sync_together,
 };
 use crate::hash::{Hasher, sha256};
 

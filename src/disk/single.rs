@@ -1,9 +1,11 @@
 //! Writes one file completely or not at all.
 
-use std::fs;
-use std::io::{self, Write};
-use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::{
+    fs,
+    io::{self, Write},
+    path::{Path, PathBuf},
+    sync::atomic::{AtomicUsize, Ordering},
+};
 
 use super::{
     Kind, Op, Writer, create, is_link, kind, names, pass, real, remove_file, rename, sync_folder,

@@ -2,8 +2,7 @@
 
 use std::sync::Arc;
 
-use super::expression::Formula;
-use super::operators::Operator;
+use super::{expression::Formula, operators::Operator};
 use crate::source::{Source, Span};
 use crate::units::Unit;
 use crate::yaml::{Node, Words};

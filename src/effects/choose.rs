@@ -3,13 +3,14 @@
 
 use std::sync::Arc;
 
-use super::catalogue::{Action, Catalogue, Effect, Parameter};
-use super::operators::Operator;
-use super::read::CHANNEL;
+use super::{
+    catalogue::{Action, Catalogue, Effect, Parameter},
+    operators::Operator,
+    read::CHANNEL,
+};
 use crate::problem::{Problem, error};
 use crate::source::{Source, Span};
-use crate::units::Unit;
-use crate::units::number::split;
+use crate::units::{Unit, number::split};
 use crate::yaml::{Words, unknown_unit};
 
 /// An effect with its size and sections.

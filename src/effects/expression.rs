@@ -6,9 +6,11 @@ use std::collections::BTreeMap;
 use super::signals::Signals;
 use crate::catalog::{FUNCTIONS, Function, Signature};
 use crate::problem::{Problem, Problems, error};
-use crate::syntax::document::Text;
-use crate::syntax::from_pest::expression;
-use crate::syntax::phrase::{Node, Operator, Phrase};
+use crate::syntax::{
+    document::Text,
+    from_pest::expression,
+    phrase::{Node, Operator, Phrase},
+};
 use crate::units::{Dimension, Unit, raised};
 
 /// The expression for a channel, with consistent units.

@@ -1,8 +1,10 @@
 //! Reads the parts of a catalogue in the protocol language: `signals` of an effect.
 
-use super::catalogue::{Action, Parameter};
-use super::expression::{Formula, Known};
-use super::read::{CHANNEL, Reader};
+use super::{
+    catalogue::{Action, Parameter},
+    expression::{Formula, Known},
+    read::{CHANNEL, Reader},
+};
 use crate::problem::problem;
 use crate::syntax::document::Text;
 use crate::units::Unit;

@@ -1,7 +1,6 @@
 //! Effects of the measuring chain: exact operations on recorded signals.
 
-use super::expression::Formula;
-use super::signals::Signals;
+use super::{expression::Formula, signals::Signals};
 use crate::metrics::filter::{Band, Cutoff, Filter, Phase};
 use crate::yaml::Words;
 

@@ -2,8 +2,10 @@
 
 use std::sync::Arc;
 
-use super::catalogue::{Action, Acts, Catalogue, Effect, Fit, Group, Parameter};
-use super::operators::Operator;
+use super::{
+    catalogue::{Action, Acts, Catalogue, Effect, Fit, Group, Parameter},
+    operators::Operator,
+};
 use crate::problem::{Problem, Problems, problem};
 use crate::source::{Source, Span, Spanned};
 use crate::units::Unit;

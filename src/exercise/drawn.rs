@@ -1,9 +1,7 @@
 //! A campaign for a protocol of which none is given: records of waves, whose levels and sizes are
 //! searched until every limit holds and nothing is found.
 
-use std::collections::BTreeMap;
-use std::f64::consts::TAU;
-use std::sync::Arc;
+use std::{collections::BTreeMap, f64::consts::TAU, sync::Arc};
 
 use indexmap::IndexSet;
 use rayon::prelude::*;
@@ -12,15 +10,19 @@ use serde_json::{Value, json};
 use super::bench::{Said, State, said};
 use crate::certify::Compiled;
 use crate::check::plan::{Datum, DatumKind, Side};
-use crate::data::campaign::{CAMPAIGN_FILE, Memory};
-use crate::data::write::table_csv;
-use crate::data::{Campaign, RecordKind};
+use crate::data::{
+    Campaign, RecordKind,
+    campaign::{CAMPAIGN_FILE, Memory},
+    write::table_csv,
+};
 use crate::effects::{Channel, Signals};
 use crate::impact::Written;
 use crate::metrics::random::{GOLDEN, mixed};
 use crate::problem::{Problem, Problems};
-use crate::run;
-use crate::run::needs::{ChannelNeed, DatumNeed, Needs};
+use crate::run::{
+    self,
+    needs::{ChannelNeed, DatumNeed, Needs},
+};
 use crate::simulate::frame;
 use crate::units::{Dimension, Unit};
 

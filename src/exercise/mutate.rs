@@ -2,8 +2,10 @@
 
 use std::ops::Range;
 
-use super::bench::{Bench, Said};
-use super::search::Found;
+use super::{
+    bench::{Bench, Said},
+    search::Found,
+};
 use crate::certify::{Compiled, compile};
 use crate::check::{Overrides, family};
 use crate::problem::Problems;

@@ -5,8 +5,10 @@ use std::collections::BTreeMap;
 use indexmap::{IndexMap, IndexSet};
 use rayon::prelude::*;
 
-use super::bench::{BOTH, Bench, Said};
-use super::disturb::shapes;
+use super::{
+    bench::{BOTH, Bench, Said},
+    disturb::shapes,
+};
 use crate::result::exercise::{Disturbance, NoPair, Over, Sized};
 use crate::run::needs::Needs;
 

@@ -10,10 +10,12 @@ use super::{
     FindNodes, Graph, InputNode, Joint, Label, LimitNodes, Node, NodeId, Operation,
     PlausibilityNodes, PositionNodes, QuantityNodes, SignalNodes, ValueNodes,
 };
-use crate::check::evaluate::{shape, words};
-use crate::check::plan::{
-    Evaluation, Expr, Input, Key, Kind, Limit, OfSection, Plan, Plausibility, Position, Quantity,
-    Report, Scope, Step, Taken, Test, Valued,
+use crate::check::{
+    evaluate::{shape, words},
+    plan::{
+        Evaluation, Expr, Input, Key, Kind, Limit, OfSection, Plan, Plausibility, Position,
+        Quantity, Report, Scope, Step, Taken, Test, Valued,
+    },
 };
 use crate::source::Span;
 use crate::units::Dimension;

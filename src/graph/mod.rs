@@ -14,8 +14,7 @@ pub use build::from_plan;
 pub use draw::svg;
 pub use print::{dot, json, text};
 
-use std::collections::BTreeSet;
-use std::sync::Arc;
+use std::{collections::BTreeSet, sync::Arc};
 
 use crate::catalog::{Function, Metric, Reducer};
 use crate::check::plan::{

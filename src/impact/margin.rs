@@ -4,10 +4,13 @@ use std::sync::Arc;
 
 use super::verdicts::decided;
 use crate::certify::Compiled;
-use crate::check::diff;
-use crate::check::plan::{Expr, Kind, LimitName, Plan, Quantity, Scalar, Type};
-use crate::result::impact::Margin;
-use crate::result::{Direction, EdgeResult, Outcome, QuantityResult, RulePlace, StatisticResult};
+use crate::check::{
+    diff,
+    plan::{Expr, Kind, LimitName, Plan, Quantity, Scalar, Type},
+};
+use crate::result::{
+    Direction, EdgeResult, Outcome, QuantityResult, RulePlace, StatisticResult, impact::Margin,
+};
 use crate::run::{Evaluated, Given, Judged, overall};
 use crate::source::Span;
 use crate::units::Dimension;

@@ -1,7 +1,9 @@
 //! The smallest sets of changed rules that give the new verdict.
 
-use super::touched::Mask;
-use super::verdicts::{Found, Verdicts};
+use super::{
+    touched::Mask,
+    verdicts::{Found, Verdicts},
+};
 use crate::result::Outcome;
 
 /// So many changed rules on which the verdict of a campaign depends are combined in all ways.

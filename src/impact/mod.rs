@@ -30,20 +30,19 @@ mod touched;
 mod variants;
 mod verdicts;
 
-use std::collections::BTreeMap;
-use std::sync::Arc;
+use std::{collections::BTreeMap, sync::Arc};
 
 use rayon::prelude::*;
 
 use crate::certify::{Compiled, Set, overrides};
-use crate::check::Overrides;
-use crate::check::diff::Change;
-use crate::check::family::Family;
+use crate::check::{Overrides, diff::Change, family::Family};
 use crate::compare::{campaigns, compared, on_found_sections, related, unknown_parameters};
 use crate::data::Campaign;
 use crate::problem::{Problem, Problems};
-use crate::result::impact::{Flip, Impact, Judged, Margin, Near, NotReplayed, Work};
-use crate::result::{FORMAT, Outcome, Reason, THIS};
+use crate::result::{
+    FORMAT, Outcome, Reason, THIS,
+    impact::{Flip, Impact, Judged, Margin, Near, NotReplayed, Work},
+};
 use crate::run::{self, Evaluated, Progress};
 use crate::source::Span;
 use crate::values::Joined;

@@ -3,8 +3,7 @@
 use indexmap::IndexMap;
 
 use crate::check::plan::{Datum, DatumKind, Plan, Scalar};
-use crate::result::Reason;
-use crate::result::impact::Share;
+use crate::result::{Reason, impact::Share};
 use crate::run::Evaluated;
 
 /// All campaigns as a group.

@@ -3,15 +3,18 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::touched::{Key, Mask};
-use super::variants::Variant;
+use super::{
+    touched::{Key, Mask},
+    variants::Variant,
+};
 use crate::check::plan::Plan;
 use crate::data::Campaign;
 use crate::graph::Graph;
 use crate::problem::Problems;
 use crate::result::comparison::OnCampaign;
-use crate::run::several::reduced;
-use crate::run::{Evaluated, Numbered, Progress, Reduced, SectionValues, evaluated, file_hash};
+use crate::run::{
+    Evaluated, Numbered, Progress, Reduced, SectionValues, evaluated, file_hash, several::reduced,
+};
 use crate::values::Joined;
 
 /// A campaign by itself, or the campaigns that files of values are of as one.

@@ -5,8 +5,10 @@ use std::collections::BTreeSet;
 
 use indexmap::IndexMap;
 
-use crate::check::diff::{self, Change};
-use crate::check::normalised;
+use crate::check::{
+    diff::{self, Change},
+    normalised,
+};
 use crate::result::impact::ChangedRule;
 use crate::syntax::document::{Block, Document, Field};
 

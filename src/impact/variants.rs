@@ -1,12 +1,13 @@
 //! The old protocol with sets of changed rules, compiled when they are asked for.
 
-use std::collections::{BTreeSet, HashMap};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::{
+    collections::{BTreeSet, HashMap},
+    sync::{Arc, Mutex, PoisonError},
+};
 
 use super::touched::{Key, MOST, Mask, Touched, bit};
 use crate::certify::{Compiled, compile};
-use crate::check::Overrides;
-use crate::check::family::Family;
+use crate::check::{Overrides, family::Family};
 use crate::compare::of_protocol;
 use crate::problem::{Problem, Problems, Severity};
 

@@ -1,12 +1,13 @@
 //! The verdict of a campaign under any set of changed rules, put together from what its parts come
 //! to under the rules that touch them.
 
-use std::collections::HashMap;
-use std::sync::Arc;
+use std::{collections::HashMap, sync::Arc};
 
-use super::source::Made;
-use super::touched::{Mask, Touched};
-use super::variants::{Cover, Variant, Variants};
+use super::{
+    source::Made,
+    touched::{Mask, Touched},
+    variants::{Cover, Variant, Variants},
+};
 use crate::check::plan::Plan;
 use crate::result::{Outcome, QuantityResult, Reason};
 use crate::run::{Evaluated, Given, Judged, overall};

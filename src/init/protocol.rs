@@ -4,8 +4,10 @@ use std::collections::BTreeSet;
 
 use serde_json::{Value as Json, json};
 
-use super::channels::{Channel, Group, Listed};
-use super::filled;
+use super::{
+    channels::{Channel, Group, Listed},
+    filled,
+};
 use crate::catalog::{Reducer, Statistic};
 use crate::problem::{Problem, Problems};
 use crate::source::Source;

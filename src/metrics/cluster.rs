@@ -5,9 +5,11 @@
 //! by site. There are three methods: drawing sites ([`bootstrap`]), and closed forms for the mean
 //! ([`Mean`]) and the standard deviation ([`StandardDeviation`]). Their coverage is given in `docs/definitions.md`.
 
-use std::collections::HashMap;
-use std::fmt;
-use std::sync::{Arc, LazyLock, Mutex, PoisonError};
+use std::{
+    collections::HashMap,
+    fmt,
+    sync::{Arc, LazyLock, Mutex, PoisonError},
+};
 
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 

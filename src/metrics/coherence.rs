@@ -1,14 +1,18 @@
 //! Coherence of two signals: the share of one that depends linearly on the other, as a function of
 //! frequency (Welch).
 
-use std::cell::OnceCell;
-use std::ops::Range;
+use std::{cell::OnceCell, ops::Range};
 
 use realfft::num_complex::Complex;
 
-use super::pair::lag::{Agreement, best_shift, overlap};
-use super::pair::{Metric, Undefined, undefined};
-use super::welch::{Trend, Windows};
+use super::{
+    pair::{
+        Metric, Undefined,
+        lag::{Agreement, best_shift, overlap},
+        undefined,
+    },
+    welch::{Trend, Windows},
+};
 
 /// Number of samples of a window. The spectral lines are 1/256 of the sampling rate apart: 0.8 Hz
 /// at 200 samples per second.

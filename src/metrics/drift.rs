@@ -1,8 +1,10 @@
 //! Drift of one axis against another along a long record: shifts in windows, and the curve through
 //! them.
 
-use super::statistics::median;
-use super::synchronise::{Estimate, Pair, Search, estimate};
+use super::{
+    statistics::median,
+    synchronise::{Estimate, Pair, Search, estimate},
+};
 
 /// Where a drift is looked for, in the unit of the axis.
 #[derive(Clone, Copy, Debug, PartialEq)]

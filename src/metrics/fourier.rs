@@ -1,8 +1,7 @@
 //! Plans of Fourier transforms. A plan takes longer to make than to use, so that each thread keeps
 //! those it has made.
 
-use std::cell::RefCell;
-use std::sync::Arc;
+use std::{cell::RefCell, sync::Arc};
 
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 

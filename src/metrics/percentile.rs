@@ -4,8 +4,7 @@
 //! Source: Hyndman and Fan, "Sample quantiles in statistical packages", The American Statistician
 //! 50 (1996) 361-365. Names, edge cases and the last digit follow `numpy.percentile`.
 
-use std::cmp::Ordering;
-use std::fmt;
+use std::{cmp::Ordering, fmt};
 
 /// Rule for the value between two order statistics.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

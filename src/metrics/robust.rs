@@ -4,8 +4,10 @@
 //! JASA 63 (1968); McGill, Tukey and Larsen, "Variations of box plots", The American Statistician 32
 //! (1978).
 
-use super::percentile::{Method, percentile};
-use super::statistics::median;
+use super::{
+    percentile::{Method, percentile},
+    statistics::median,
+};
 
 /// Quantile of the normal distribution of a two-sided interval of 99 %: some hundred intervals are
 /// looked at in one campaign.

@@ -1,10 +1,11 @@
 //! How a signal was recorded: held values, saturation, quantisation, noise.
 
-use std::cell::OnceCell;
-use std::ops::Deref;
+use std::{cell::OnceCell, ops::Deref};
 
-use super::spectrum::strongest_line;
-use super::statistics::{Divisor, median, standard_deviation};
+use super::{
+    spectrum::strongest_line,
+    statistics::{Divisor, median, standard_deviation},
+};
 
 /// The samples of a signal, with what several of its numbers are computed from, each once.
 #[derive(Debug)]

@@ -1,7 +1,9 @@
 //! Single lines in the spectrum of a signal: interference of a fixed frequency.
 
-use super::fourier;
-use super::statistics::{mean, median};
+use super::{
+    fourier,
+    statistics::{mean, median},
+};
 
 /// The first line that is looked at, in periods over the signal: below, the track, the curve and
 /// the modes of the body have few periods in a section and look like lines.

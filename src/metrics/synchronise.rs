@@ -6,8 +6,7 @@ mod sums;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use self::sums::Sums;
-use super::random_effects::between;
-use super::resample::uniform_grid;
+use super::{random_effects::between, resample::uniform_grid};
 
 /// One signal of both records: axis and samples of each, with increasing axes.
 #[derive(Clone, Copy, Debug)]

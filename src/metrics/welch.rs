@@ -1,13 +1,13 @@
 //! Spectra by Welch's method: means over windows of a signal that overlap.
 
-use std::f64::consts::TAU;
-use std::sync::Arc;
+use std::{f64::consts::TAU, sync::Arc};
 
-use realfft::RealToComplex;
-use realfft::num_complex::Complex;
+use realfft::{RealToComplex, num_complex::Complex};
 
-use super::fourier;
-use super::pair::{Undefined, undefined};
+use super::{
+    fourier,
+    pair::{Undefined, undefined},
+};
 
 /// What is taken away from each window.
 #[derive(Clone, Copy, Debug, PartialEq)]

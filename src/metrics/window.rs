@@ -1,8 +1,6 @@
 //! Values of a window that slides along an axis, in length or time.
 
-use std::collections::VecDeque;
-use std::fmt;
-use std::ops::Range;
+use std::{collections::VecDeque, fmt, ops::Range};
 
 use super::{resample::not_increasing, rounded, sum::RunningSums};
 

@@ -4,15 +4,17 @@
 //! yaw; c car body, b bogie frame, w wheelset. Every body is described in its own track frame; E,
 //! Phi, Theta are the lateral offset, the roll and the yaw of one frame relative to another.
 
-use super::G;
-use super::contact::{Contact, Forces, Motion, WHEELS, Wheels};
-use super::input::Offset;
 pub use super::input::{Hints, Input};
-use super::masses::mobility;
-use super::parameters::Vehicle;
-use super::profile::Profile;
-use super::state::{BOGIE, CAR, PHI, PSI, State, WHEELSET, Z};
-use super::track::{Line, Track};
+use super::{
+    G,
+    contact::{Contact, Forces, Motion, WHEELS, Wheels},
+    input::Offset,
+    masses::mobility,
+    parameters::Vehicle,
+    profile::Profile,
+    state::{BOGIE, CAR, PHI, PSI, State, WHEELSET, Z},
+    track::{Line, Track},
+};
 
 /// Exponent of the elastic slip element.
 const SHARPNESS: i32 = 8;

@@ -1,7 +1,9 @@
 //! The track under all bodies of a vehicle at one time.
 
-use super::contact::Wheels;
-use super::track::{Hint, Irregularity, Line};
+use super::{
+    contact::Wheels,
+    track::{Hint, Irregularity, Line},
+};
 
 /// The track frame of one body relative to that of another.
 #[derive(Clone, Copy, Debug, Default)]

@@ -5,9 +5,11 @@
 //! which the step is divided. Source: E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary
 //! Differential Equations I", 2nd ed. (1993), II.1.
 
-use super::equations::{Equations, Hints, Input, Outputs};
-use super::state::State;
-use super::track::Track;
+use super::{
+    equations::{Equations, Hints, Input, Outputs},
+    state::State,
+    track::Track,
+};
 
 /// Step in s, and sampling interval.
 pub const SAMPLE: f64 = 1e-3;

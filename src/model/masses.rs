@@ -1,7 +1,9 @@
 //! Masses and moments of inertia of the displacements.
 
-use super::parameters::Vehicle;
-use super::state::{BOGIE, CAR, State, WHEELSET};
+use super::{
+    parameters::Vehicle,
+    state::{BOGIE, CAR, State, WHEELSET},
+};
 
 /// Reciprocal masses in 1/kg and moments of inertia in 1/(kg m^2). The payload increases the
 /// inertias of the car body in proportion to its mass.

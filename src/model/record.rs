@@ -1,10 +1,12 @@
 //! From a run to a record: the recording chain of the reference.
 
-use super::equations::{Equations, Outputs};
-use super::integrate::{Failure, FailureKind, LONGEST, SAMPLE, Steps, least_steps, run};
-use super::parameters::Vehicle;
-use super::profile::Profile;
-use super::track::{Track, TrackTable};
+use super::{
+    equations::{Equations, Outputs},
+    integrate::{Failure, FailureKind, LONGEST, SAMPLE, Steps, least_steps, run},
+    parameters::Vehicle,
+    profile::Profile,
+    track::{Track, TrackTable},
+};
 use crate::metrics::filter::{Band, Cutoff, Filter, Phase};
 
 /// Channels of a record with their units, in the order of the file.

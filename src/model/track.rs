@@ -1,7 +1,6 @@
 //! Track input: curvature, cant and irregularities along the line.
 
-use super::parameters::Vehicle;
-use super::spline::Spline;
+use super::{parameters::Vehicle, spline::Spline};
 
 /// A measured track: one value per point, distance strictly increasing.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -1,7 +1,9 @@
 //! Allowances of features, from repeats or from the scatter of the differences.
 
-use super::records::{Pair, Roles};
-use super::windows::{Cut, piece, two_digits};
+use super::{
+    records::{Pair, Roles},
+    windows::{Cut, piece, two_digits},
+};
 use crate::diagnose::observe::layout::{Spectrum, level};
 
 /// Bounds of the standard deviations: a level as a share of the rms value of its channel, a band as

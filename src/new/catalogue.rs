@@ -2,10 +2,12 @@
 
 use serde::Serialize;
 
-use super::allowances::Allowance;
-use super::records::Roles;
-use super::scales::{Scales, scale_of};
-use super::windows::{Cut, two_digits};
+use super::{
+    allowances::Allowance,
+    records::Roles,
+    scales::{Scales, scale_of},
+    windows::{Cut, two_digits},
+};
 use crate::init::protocol::identifier;
 use crate::problem::{Problem, Problems, problem};
 use crate::source::Source;

@@ -10,13 +10,14 @@ pub mod windows;
 use serde_json::{Value as Json, json};
 
 use crate::data::write::{table_csv, yaml_text};
-use crate::init::protocol::{Names, after_number, block_name, identifier, plain_text};
-use crate::init::{File, filled};
+use crate::init::{
+    File, filled,
+    protocol::{Names, after_number, block_name, identifier, plain_text},
+};
 use crate::problem::{Problem, Problems};
 use crate::source::Source;
 use crate::syntax;
-use crate::units::Unit;
-use crate::units::number::significant;
+use crate::units::{Unit, number::significant};
 use allowances::{Allowance, allowances};
 use catalogue::{Entry, entries, listed};
 use records::{DISTANCE, Pair, Roles, Series, TIME, roles};

@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
-use crate::data::checks::median;
-use crate::data::record::{Column, Wanted, read_headings, read_record};
+use crate::data::{
+    checks::median,
+    record::{Column, Wanted, read_headings, read_record},
+};
 use crate::metrics::resample::interpolate;
 use crate::problem::{Problem, Problems, problem};
-use crate::units::number::significant;
-use crate::units::{Dimension, Unit};
+use crate::units::{Dimension, Unit, number::significant};
 
 pub const TIME: &str = "time";
 pub const DISTANCE: &str = "distance";

@@ -1,7 +1,9 @@
 //! The size of force and motion in the records, for the ranges of effects.
 
-use super::records::{Channel, Pair, Roles};
-use super::windows::{Cut, piece};
+use super::{
+    records::{Channel, Pair, Roles},
+    windows::{Cut, piece},
+};
 use crate::diagnose::observe::layout::Spectrum;
 use crate::init::protocol::identifier;
 use crate::units::{Dimension, Unit};

@@ -1,17 +1,20 @@
 //! Reads a report: its results, and the attached protocol.
 
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 use serde::Deserialize;
 use serde_json::Value;
 
-use super::pdf::Attachments;
-use super::{before, signature, statement};
+use super::{before, pdf::Attachments, signature, statement};
 use crate::certify::{Compiled, Setting, again, confirmations};
 use crate::check::family::Family;
-use crate::data::hash::sha256;
-use crate::data::text::{decode, read_bytes};
+use crate::data::{
+    hash::sha256,
+    text::{decode, read_bytes},
+};
 use crate::disk;
 use crate::library;
 use crate::problem::{Problem, Problems};

@@ -2,14 +2,15 @@
 
 use std::path::PathBuf;
 
-use super::carried::{Carried, REPORT, REPORT_HTML, REPORT_PDF};
-use super::check::Check;
-use super::pdf::{Written, written};
-use crate::data::campaign::Changed;
-use crate::data::fingerprint::fingerprint;
-use crate::data::origin::OriginFile;
-use crate::data::text::read_bytes;
-use crate::data::{Campaign, RecordKind};
+use super::{
+    carried::{Carried, REPORT, REPORT_HTML, REPORT_PDF},
+    check::Check,
+    pdf::{Written, written},
+};
+use crate::data::{
+    Campaign, RecordKind, campaign::Changed, fingerprint::fingerprint, origin::OriginFile,
+    text::read_bytes,
+};
 use crate::problem::Problems;
 use crate::result::{Certification, THIS};
 use crate::run::Progress;

@@ -1,15 +1,16 @@
 //! Detached signatures in the format of minisign: Ed25519 over BLAKE2b of the file, in a separate
 //! file next to it.
 
-use std::io::Cursor;
-use std::path::{Path, PathBuf};
+use std::{
+    io::Cursor,
+    path::{Path, PathBuf},
+};
 
 use minisign::{KeyPair, PublicKeyBox, SecretKeyBox, SignatureBox};
 pub use minisign::{PublicKey, SecretKey};
 
 use super::check::Check;
-use crate::data::hash::sha256;
-use crate::data::text::read_bytes;
+use crate::data::{hash::sha256, text::read_bytes};
 use crate::disk;
 use crate::problem::Problem;
 

@@ -4,15 +4,12 @@
 //! Formats: in-toto Attestation Framework, "Statement" and "ResourceDescriptor"; SLSA v1.0,
 //! "Provenance". It contains neither time nor host, so that the same input gives the same bytes.
 
-use std::collections::BTreeSet;
-use std::path::Path;
+use std::{collections::BTreeSet, path::Path};
 
 use serde_json::{Map, Value, json};
 
 use super::check::Check;
-use crate::data::fingerprint::fingerprint;
-use crate::data::hash::sha256;
-use crate::data::text::read_bytes;
+use crate::data::{fingerprint::fingerprint, hash::sha256, text::read_bytes};
 use crate::disk::{self, SetKind};
 use crate::result::Certification;
 

@@ -1,7 +1,6 @@
 //! Traces one number of a report to the line of its rule and to the rows of its data.
 
-use std::fmt::Write;
-use std::path::PathBuf;
+use std::{fmt::Write, path::PathBuf};
 
 use super::carried::Carried;
 use crate::certify::Compiled;
@@ -10,8 +9,10 @@ use crate::graph::{Node, Operation};
 use crate::problem::{Problem, Problems, problem};
 use crate::report::number::significant;
 use crate::result::{FileHash, PairValue, QuantityResult, RecordName, RulePlace, StatisticResult};
-use crate::run::single::{Side, single};
-use crate::run::{find, replay};
+use crate::run::{
+    find, replay,
+    single::{Side, single},
+};
 use crate::source::Span;
 use crate::terminal::Lines;
 use crate::units::Unit;

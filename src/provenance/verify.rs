@@ -4,22 +4,19 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use super::carried::Carried;
 pub use super::check::{Check, Outcome, lines};
-use super::compare::{Compared, Difference, compare};
 pub use super::files::Again;
-use super::files::{as_imported, end, pages};
+use super::{
+    carried::Carried,
+    compare::{Compared, Difference, compare},
+    files::{as_imported, end, pages},
+};
 use crate::certify::{Compiled, certify, protocol_info};
 use crate::check::family::Family;
-use crate::data::fingerprint::fingerprint;
-use crate::data::hash::sha256;
-use crate::data::{Campaign, Campaigns};
+use crate::data::{Campaign, Campaigns, fingerprint::fingerprint, hash::sha256};
 use crate::problem::{Problem, Problems};
-use crate::result::confirmation::Signed;
-use crate::result::{self, Certification, ConfirmedValue, Kind, THIS};
-use crate::run::Settings;
-use crate::run::find;
-use crate::run::replay::replay;
+use crate::result::{self, Certification, ConfirmedValue, Kind, THIS, confirmation::Signed};
+use crate::run::{Settings, find, replay::replay};
 
 /// Checks of the report alone; returns also its compiled protocol, if possible.
 pub fn alone(carried: &Carried, given: Option<&Family>) -> (Vec<Check>, Option<Compiled>) {

@@ -1,7 +1,6 @@
 //! Scores of blind diagnoses as a page.
 
-use crate::report::document::*;
-use crate::report::number;
+use crate::report::{document::*, number};
 use crate::result::blind::{Blind, Case};
 
 /// Whether the answer is right. If no effect of the catalogue is hidden, no cause may be named with

@@ -1,7 +1,6 @@
 //! What a campaign can show: drawn campaigns, detectable sizes, effects closest to being named.
 
-use crate::report::document::*;
-use crate::report::number;
+use crate::report::{document::*, number};
 use crate::result::diagnosis::{Detectable, Diagnosis, Share};
 
 /// What the search names in drawn campaigns.

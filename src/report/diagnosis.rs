@@ -1,15 +1,18 @@
 //! A diagnosis as a document: answer, location of the gap, causes, reduction of the gap, detectable
 //! effects.
 
-use crate::report::detectable::detectable;
-use crate::report::document::*;
-use crate::report::figure;
-use crate::report::number;
-use crate::report::view::{self, Opening};
-use crate::result::Certification;
-use crate::result::diagnosis::{
-    Cause, Diagnosis, Invariant, NamedEffect, Picture, QuantityShrink, Ratio, Shape, Shrink, Slope,
-    Trend, Value, Where,
+use crate::report::{
+    detectable::detectable,
+    document::*,
+    figure, number,
+    view::{self, Opening},
+};
+use crate::result::{
+    Certification,
+    diagnosis::{
+        Cause, Diagnosis, Invariant, NamedEffect, Picture, QuantityShrink, Ratio, Shape, Shrink,
+        Slope, Trend, Value, Where,
+    },
 };
 use crate::words;
 

@@ -2,8 +2,10 @@
 
 use indexmap::IndexSet;
 
-use super::document::{Cell, Symbols, Table, Tone};
-use super::number;
+use super::{
+    document::{Cell, Symbols, Table, Tone},
+    number,
+};
 use crate::report::document::cells;
 use crate::result::{Consequence, Finding, Occurrence};
 use crate::words;

@@ -7,16 +7,16 @@
 
 use std::collections::BTreeMap;
 
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
-use minijinja::syntax::SyntaxConfig;
-use minijinja::{Environment, UndefinedBehavior, Value, context};
+use base64::{Engine, engine::general_purpose::STANDARD};
+use minijinja::{Environment, UndefinedBehavior, Value, context, syntax::SyntaxConfig};
 use serde_json::Value as Json;
 
 use crate::hash::sha256_base64;
 use crate::problem::{Problem, Problems};
-use crate::report::document::{Document, Medium};
-use crate::report::visible::visible;
+use crate::report::{
+    document::{Document, Medium},
+    visible::visible,
+};
 use crate::words;
 
 const PAGE: &str = include_str!("../../templates/report.html");

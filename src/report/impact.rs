@@ -1,12 +1,16 @@
 //! What the change of a protocol would have decided, as a document for those who decide on it.
 
-use super::comparison::{campaigns, rules};
-use super::document::*;
-use super::number;
-use super::view::{self, Opening};
+use super::{
+    comparison::{campaigns, rules},
+    document::*,
+    number,
+    view::{self, Opening},
+};
 use crate::hash::sha256;
-use crate::result::impact::{ChangedRule, Flip, Impact, Judged, Margin, Near, NotReplayed, Share};
-use crate::result::{CampaignInfo, FileHash, ProtocolInfo};
+use crate::result::{
+    CampaignInfo, FileHash, ProtocolInfo,
+    impact::{ChangedRule, Flip, Impact, Judged, Margin, Near, NotReplayed, Share},
+};
 
 /// Title of every such report.
 pub const TITLE: &str = "Impact of a change of rules";

@@ -2,8 +2,10 @@
 //! error.
 
 use crate::problem::{Problem, Problems};
-use crate::report::document::Document;
-use crate::report::pdf::{Attachment, Pdf};
+use crate::report::{
+    document::Document,
+    pdf::{Attachment, Pdf},
+};
 
 /// Refuses: this build has no typesetter.
 ///

@@ -4,13 +4,15 @@
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use crate::result::comparison::{Comparison, Sensitivity};
-use crate::result::impact::{Flip, Impact};
-use crate::result::margin::MarginStudy;
-use crate::result::study::{
-    AtOffset, ParameterStudy, QuantitySpread, SelectionStudy, Study, StudyResult, SyncStudy,
+use crate::result::{
+    Certification, ClassSpread, DomainResult, QuantityResult, Reported,
+    comparison::{Comparison, Sensitivity},
+    impact::{Flip, Impact},
+    margin::MarginStudy,
+    study::{
+        AtOffset, ParameterStudy, QuantitySpread, SelectionStudy, Study, StudyResult, SyncStudy,
+    },
 };
-use crate::result::{Certification, ClassSpread, DomainResult, QuantityResult, Reported};
 
 /// File name and content.
 type File = (String, Vec<u8>);

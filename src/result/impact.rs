@@ -3,8 +3,11 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::comparison::{Compared, OnCampaign};
-use super::{Reason, told};
+use super::{
+    Reason,
+    comparison::{Compared, OnCampaign},
+    told,
+};
 
 /// The keys of `impact.json`.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]

@@ -4,8 +4,9 @@ use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::scope::map;
-use super::{Direction, PairValue, Reason, RulePlace, Scope, Spread, StatisticName, told};
+use super::{
+    Direction, PairValue, Reason, RulePlace, Scope, Spread, StatisticName, scope::map, told,
+};
 
 /// One quantity of the protocol: its processing, its values and its verdict.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]

@@ -4,11 +4,13 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::parts::{
-    Beyond, Channels, Datum, GivenVerdict, InDraws, LimitNotMet, OfVehicle, RecordsOf, Sections,
-    ShortZone, Subject, SuspectedFactor,
+use super::{
+    parts::{
+        Beyond, Channels, Datum, GivenVerdict, InDraws, LimitNotMet, OfVehicle, RecordsOf,
+        Sections, ShortZone, Subject, SuspectedFactor,
+    },
+    told,
 };
-use super::told;
 use crate::words::{self, Text};
 
 /// Why something has no value, is not used, does not hold or is not assessable.

@@ -3,8 +3,10 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::parts::{RecordsOf, Sections};
-use super::{ParameterInfo, Reason, StatisticName, Unmatched};
+use super::{
+    ParameterInfo, Reason, StatisticName, Unmatched,
+    parts::{RecordsOf, Sections},
+};
 use crate::words::{self, Text};
 
 /// What a result remarks without a change of its verdict.

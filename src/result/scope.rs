@@ -1,7 +1,6 @@
 //! What a statistic is of: which statistic, of which values, of which record.
 
-use std::fmt;
-use std::sync::Arc;
+use std::{fmt, sync::Arc};
 
 use indexmap::IndexMap;
 use schemars::JsonSchema;

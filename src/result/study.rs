@@ -5,10 +5,9 @@ use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize, Serializer};
 
-use super::margin::MarginStudy;
 use super::{
     CampaignInfo, FORMAT, ProtocolInfo, Reason, Remark, Scope, StatisticName, THIS, UnusedSection,
-    Verdict, told,
+    Verdict, margin::MarginStudy, told,
 };
 
 /// A study with its inputs, in the form of `study.json`.

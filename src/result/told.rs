@@ -2,8 +2,10 @@
 //! the data under a key beside it.
 
 use schemars::JsonSchema;
-use serde::de::{Deserialize, DeserializeOwned, Deserializer, Error};
-use serde::ser::{Error as _, Serialize, Serializer};
+use serde::{
+    de::{Deserialize, DeserializeOwned, Deserializer, Error},
+    ser::{Error as _, Serialize, Serializer},
+};
 use serde_json::{Map, Value, json};
 
 use crate::words;

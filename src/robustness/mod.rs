@@ -12,11 +12,12 @@ use crate::certify::{Compiled, Opened, campaign_info, protocol_info};
 use crate::check::plan::{Decision, Plan};
 use crate::data::Campaigns;
 use crate::problem::{Problem, Problems, problem};
-use crate::result::study::{Reduction, SelectionStudy, Study, StudyResult};
-use crate::result::{CampaignInfo, Reason};
+use crate::result::{
+    CampaignInfo, Reason,
+    study::{Reduction, SelectionStudy, Study, StudyResult},
+};
 use crate::run::{Evaluated, Progress, Shifts, evaluate};
-use crate::study::case::Case;
-use crate::study::{self, reduced, selections};
+use crate::study::{self, case::Case, reduced, selections};
 
 pub use margin::{DRAWS, Margins, margin};
 pub use parameters::{Vary, all_choices, parameters};

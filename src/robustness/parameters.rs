@@ -1,12 +1,12 @@
 //! The verdict as a function of parameters and rules of the protocol, each varied by itself.
 
-use super::rule::Rule;
-use super::scale::Scale;
-use super::{Settings, case_of, joined, unshifted};
+use super::{Settings, case_of, joined, rule::Rule, scale::Scale, unshifted};
 use crate::certify::{Compiled, compile};
-use crate::check::family::Family;
-use crate::check::plan::{Parameter, Plan, SetBy};
-use crate::check::{Override, Overrides};
+use crate::check::{
+    Override, Overrides,
+    family::Family,
+    plan::{Parameter, Plan, SetBy},
+};
 use crate::data::Campaigns;
 use crate::problem::{Problem, Problems};
 use crate::result::study::{

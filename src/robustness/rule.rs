@@ -3,8 +3,10 @@
 use crate::check::family::Family;
 use crate::problem::Problem;
 use crate::source::Source;
-use crate::syntax::document::{Block, Document, Field, Text};
-use crate::syntax::keys;
+use crate::syntax::{
+    document::{Block, Document, Field, Text},
+    keys,
+};
 
 /// One field of one block.
 #[derive(Clone, Debug, PartialEq, Eq)]

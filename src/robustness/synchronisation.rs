@@ -4,14 +4,19 @@ use super::{Settings, joined, too_few};
 use crate::certify::Compiled;
 use crate::data::Campaigns;
 use crate::problem::Problems;
-use crate::result::study::{AtOffset, Estimated, Flipped, Offset, Study, StudyResult, SyncStudy};
-use crate::result::{Reason, Remark, UnusedSection, Verdict, VerdictWords};
+use crate::result::{
+    Reason, Remark, UnusedSection, Verdict, VerdictWords,
+    study::{AtOffset, Estimated, Flipped, Offset, Study, StudyResult, SyncStudy},
+};
 use crate::run::{Evaluated, Progress, Shifts, evaluate};
-use crate::study::case::Case;
-use crate::study::fails::Fails;
-use crate::study::flips::{Marked, flips};
-use crate::study::random::{Random, draw};
-use crate::study::{marked, reduced};
+use crate::study::{
+    case::Case,
+    fails::Fails,
+    flips::{Marked, flips},
+    marked,
+    random::{Random, draw},
+    reduced,
+};
 
 /// Settings of a study of the synchronisation.
 #[derive(Clone, Debug)]

@@ -1,10 +1,12 @@
 //! The data of a campaign checked without its records.
 
-use crate::run::data_rules::{nothing_usable, stop_on_fault};
-use crate::run::find;
-use crate::run::prelude::*;
-use crate::run::sections::{Facts, requirements, units, wanted};
-use crate::run::values::SectionValues;
+use crate::run::{
+    data_rules::{nothing_usable, stop_on_fault},
+    find,
+    prelude::*,
+    sections::{Facts, requirements, units, wanted},
+    values::SectionValues,
+};
 
 /// Checks what a run reads before any record: the data of vehicles and sections, and wanted
 /// operation. Records need not exist.

@@ -2,22 +2,24 @@
 
 use std::path::Path;
 
-use super::made::first;
-use super::{Simulator, Task};
-use crate::data::record::{Record, Wanted, read_record};
-use crate::data::table::Cell;
-use crate::data::{Campaign, RecordKind};
+use super::{Simulator, Task, made::first};
+use crate::data::{
+    Campaign, RecordKind,
+    record::{Record, Wanted, read_record},
+    table::Cell,
+};
 use crate::disk;
 use crate::effects::{Channel, Signals};
-use crate::model::integrate::Steps;
 use crate::model::{
     self, CHANNELS, PARAMETERS, Parameter, Profile, ProfileTable, SAMPLING_RATE, Setup, TrackTable,
-    Vehicle, VehicleFault, Window,
+    Vehicle, VehicleFault, Window, integrate::Steps,
 };
 use crate::problem::{Problem, Problems, error};
 use crate::source::{Source, Spanned};
-use crate::units::number::{self, Refused};
-use crate::units::{Dimension, Unit};
+use crate::units::{
+    Dimension, Unit,
+    number::{self, Refused},
+};
 use crate::yaml::Node;
 
 /// Sides of a wheelset in the vehicle file.

@@ -5,11 +5,13 @@ use std::sync::Arc;
 use arrow_array::{ArrayRef, Float64Array, RecordBatch};
 
 use super::section::Section;
-use crate::data::campaign::ReadFile;
-use crate::data::checks;
-use crate::data::record::{Format, Frame, Record, RecordSource, Wanted};
-use crate::data::write::{Digits, OutColumn, record};
-use crate::data::{Campaign, RecordKind};
+use crate::data::{
+    Campaign, RecordKind,
+    campaign::ReadFile,
+    checks,
+    record::{Format, Frame, Record, RecordSource, Wanted},
+    write::{Digits, OutColumn, record},
+};
 use crate::effects::{Channel, Signals};
 use crate::problem::Problem;
 use crate::units::{Dimension, Unit};

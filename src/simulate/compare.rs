@@ -1,7 +1,6 @@
 //! Deviation of a simulator from a record from elsewhere.
 
-use super::add::interpolated;
-use super::{Section, Simulator};
+use super::{Section, Simulator, add::interpolated};
 use crate::effects::Signals;
 use crate::problem::{Problem, error};
 

@@ -1,12 +1,12 @@
 //! A function of the calling program as a simulator: one call makes one record, in memory.
 
-use std::fmt;
-use std::sync::Arc;
+use std::{fmt, sync::Arc};
 
-use super::made::read_made;
-use super::{Simulator, Task};
-use crate::data::record::{Frame, RecordSource};
-use crate::data::{Campaign, RecordKind};
+use super::{Simulator, Task, made::read_made};
+use crate::data::{
+    Campaign, RecordKind,
+    record::{Frame, RecordSource},
+};
 use crate::effects::Signals;
 use crate::problem::Problem;
 

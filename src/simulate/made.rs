@@ -1,8 +1,7 @@
 //! The record that a simulator made, as a program or as a function.
 
 use super::campaign::{Units, in_units, signals_of};
-use crate::data::Heading;
-use crate::data::record::RecordSource;
+use crate::data::{Heading, record::RecordSource};
 use crate::effects::Signals;
 use crate::problem::Problem;
 use crate::units::Unit;

@@ -1,8 +1,10 @@
 //! Origin of a simulated campaign.
 
-use crate::data::hash::sha256;
-use crate::data::origin::{Origin, OriginEffect, OriginFile, OriginParameter};
-use crate::data::{Campaign, RecordKind};
+use crate::data::{
+    Campaign, RecordKind,
+    hash::sha256,
+    origin::{Origin, OriginEffect, OriginFile, OriginParameter},
+};
 use crate::disk;
 use crate::effects::{Applied, Catalogue};
 use crate::problem::Problem;

@@ -1,8 +1,10 @@
 //! The sections of a campaign for simulators.
 
-use crate::data::sites::sites;
-use crate::data::table::{Cell, Table};
-use crate::data::{Campaign, Heading};
+use crate::data::{
+    Campaign, Heading,
+    sites::sites,
+    table::{Cell, Table},
+};
 use crate::problem::{Problem, Problems, error};
 use crate::source::Source;
 use crate::units::{Dimension, Unit};

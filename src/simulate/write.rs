@@ -2,13 +2,14 @@
 
 use std::sync::Arc;
 
-use super::campaign::frame;
-use super::origin::Made;
-use crate::data::campaign::{CAMPAIGN_FILE, Memory};
-use crate::data::origin::{ORIGIN_FILE, ORIGIN_KEY};
-use crate::data::record::Format;
-use crate::data::write::{Entry, Outputs, campaign_yaml, campaign_yaml_with};
-use crate::data::{Campaign, RecordKind};
+use super::{campaign::frame, origin::Made};
+use crate::data::{
+    Campaign, RecordKind,
+    campaign::{CAMPAIGN_FILE, Memory},
+    origin::{ORIGIN_FILE, ORIGIN_KEY},
+    record::Format,
+    write::{Entry, Outputs, campaign_yaml, campaign_yaml_with},
+};
 use crate::effects::Signals;
 use crate::problem::{Problem, Problems};
 use crate::units::Unit;

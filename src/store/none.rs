@@ -1,7 +1,6 @@
 //! A program without the feature `store`: no object is ever found, and none can be made.
 
-use std::convert::Infallible;
-use std::ops::Range;
+use std::{convert::Infallible, ops::Range};
 
 use bytes::Bytes;
 

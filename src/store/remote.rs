@@ -1,28 +1,26 @@
 //! Objects, read through the crate `object_store`.
 
-use std::error::Error;
-use std::fmt;
-use std::io;
-use std::ops::Range;
-use std::sync::{Arc, OnceLock};
-use std::time::Duration;
+use std::{
+    error::Error,
+    fmt, io,
+    ops::Range,
+    sync::{Arc, OnceLock},
+    time::Duration,
+};
 
 use bytes::Bytes;
-use object_store::aws::AmazonS3Builder;
-use object_store::azure::MicrosoftAzureBuilder;
-use object_store::gcp::GoogleCloudStorageBuilder;
-use object_store::http::HttpBuilder;
-use object_store::local::LocalFileSystem;
-use object_store::path::Path;
 use object_store::{
     BackoffConfig, ClientOptions, GetOptions, ObjectStore, ObjectStoreExt, ObjectStoreScheme,
-    RetryConfig, coalesce_ranges,
+    RetryConfig, aws::AmazonS3Builder, azure::MicrosoftAzureBuilder, coalesce_ranges,
+    gcp::GoogleCloudStorageBuilder, http::HttpBuilder, local::LocalFileSystem, path::Path,
 };
 use tokio::runtime::{Builder, Runtime};
 use url::Url;
 
-use super::Refused;
-use super::allowed::{ALLOWED, check};
+use super::{
+    Refused,
+    allowed::{ALLOWED, check},
+};
 
 /// Parts that lie closer together than this are read by one request. A request takes as long as
 /// some 100 kB do.

@@ -1,8 +1,10 @@
 //! Values and limits of a campaign for a study, by stratum, section and quantity.
 
 use crate::catalog::Statistic;
-use crate::metrics::moments::Moment;
-use crate::metrics::percentile::{Method, percentile};
+use crate::metrics::{
+    moments::Moment,
+    percentile::{Method, percentile},
+};
 use crate::result::{Direction, Reason, Scope, StatisticName, UnusedSection};
 use crate::run::pool::{
     Bounds, Estimator, Pool, Pooled, PooledLimit, PooledMinimum, PooledQuantity, Rule,

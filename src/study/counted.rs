@@ -2,10 +2,10 @@
 //! influence of each section.
 
 use super::case::Case;
-use crate::result::study::{
-    Importance, QuantitySpread, Share, Spread, StatisticSpread, WorstSelection,
+use crate::result::{
+    Direction, Reason, StatisticName,
+    study::{Importance, QuantitySpread, Share, Spread, StatisticSpread, WorstSelection},
 };
-use crate::result::{Direction, Reason, StatisticName};
 
 /// Results of many selections.
 #[derive(Debug)]

@@ -4,12 +4,14 @@ use std::sync::Mutex;
 
 use rayon::prelude::*;
 
-use super::case::{Case, Quantity};
-use super::counted::{Counted, LimitCount, Numbers};
-use super::fails::Fails;
-use super::halves::Halves;
-use super::overall::{OverAll, over_all, too_few};
-use super::verdicts::Verdicts;
+use super::{
+    case::{Case, Quantity},
+    counted::{Counted, LimitCount, Numbers},
+    fails::Fails,
+    halves::Halves,
+    overall::{OverAll, over_all, too_few},
+    verdicts::Verdicts,
+};
 use crate::result::study::{Share, Spread};
 use crate::run::pool::Rule;
 

@@ -1,8 +1,10 @@
 //! Largest and smallest values over all selections, counted by binomial coefficients without
 //! forming selections.
 
-use super::case::{Case, Measure, choose};
-use super::listed::{Listed, weighted};
+use super::{
+    case::{Case, Measure, choose},
+    listed::{Listed, weighted},
+};
 
 /// Order statistics of a largest value, a smallest value or a largest magnitude. `None` for other
 /// statistics, and where no selection has a value.

@@ -1,15 +1,16 @@
 //! Selections whose verdict changes with other values of the same sections.
 
-use super::Settings;
-use super::case::Case;
-use super::enumerate::fails;
-use super::fails::Fails;
-use super::halves::Halves;
-use super::judged::Judge;
-use super::random::{Count, draw_until};
+use super::{
+    Settings,
+    case::Case,
+    enumerate::fails,
+    fails::Fails,
+    halves::Halves,
+    judged::Judge,
+    random::{Count, draw_until},
+};
 use crate::metrics::interval::wilson;
-use crate::result::study::Flips;
-use crate::result::{Reason, Verdict};
+use crate::result::{Reason, Verdict, study::Flips};
 
 /// A case, and the selections that are not validated if all were evaluated.
 #[derive(Clone, Copy, Debug)]

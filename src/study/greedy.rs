@@ -1,8 +1,7 @@
 //! Greedy search for a set of sections whose removal changes the verdict, for campaigns where not
 //! all sets can be tried. One section is removed at a time, always the one with the largest effect.
 
-use super::case::Case;
-use super::judged::Judge;
+use super::{case::Case, judged::Judge};
 use crate::result::Verdict;
 
 /// A set whose removal changes the verdict and of which no section can be restored; not necessarily

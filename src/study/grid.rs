@@ -8,10 +8,11 @@
 
 use realfft::num_complex::Complex;
 
-use super::case::{Case, Kind, Measure};
-use super::halves::Form;
-use crate::metrics::fourier;
-use crate::metrics::moments::Moment;
+use super::{
+    case::{Case, Kind, Measure},
+    halves::Form,
+};
+use crate::metrics::{fourier, moments::Moment};
 use crate::result::study::{Intervals, Spread};
 
 /// Largest and smallest number of grid cells.

@@ -4,8 +4,10 @@
 //! variance has this form, with rows and columns the sums over two halves of a selection, and so
 //! has a mean (c = 0).
 
-use super::buckets::{Buckets, ordered};
-use super::fails::Fails;
+use super::{
+    buckets::{Buckets, ordered},
+    fails::Fails,
+};
 
 /// Contribution of one half of a selection to a value.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -4,8 +4,10 @@
 //! A sum over a selection is the sum of two numbers, one for each half. A selection therefore costs
 //! one addition.
 
-use super::case::{Case, Kind, Measure, choose};
-use super::groups::{Block, Column, Row};
+use super::{
+    case::{Case, Kind, Measure, choose},
+    groups::{Block, Column, Row},
+};
 use crate::metrics::moments::{Moment, Moments, Summed};
 
 /// All choices of sections from some strata.

@@ -3,8 +3,7 @@
 
 use super::case::{Case, Kind, Measure, Quantity};
 use crate::metrics::moments::{Moments, Summed};
-use crate::result::Verdict;
-use crate::result::study::Selected;
+use crate::result::{Verdict, study::Selected};
 use crate::run::pool::Rule;
 
 /// The verdict on a selection.

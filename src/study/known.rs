@@ -3,11 +3,13 @@
 
 use rayon::prelude::*;
 
-use super::case::{Case, Kind, Measure};
-use super::extremes;
-use super::grid::Additive;
-use super::halves::{Halves, Parts};
-use super::listed::sums;
+use super::{
+    case::{Case, Kind, Measure},
+    extremes,
+    grid::Additive,
+    halves::{Halves, Parts},
+    listed::sums,
+};
 use crate::metrics::moments::Moment;
 use crate::result::study::Spread;
 

@@ -1,8 +1,7 @@
 //! Order statistics where the values or their counts can be listed: single values, and sums by
 //! sorting.
 
-use super::groups::Block;
-use super::halves::Form;
+use super::{groups::Block, halves::Form};
 use crate::result::study::{Intervals, Spread};
 
 /// From values in any order with their counts; `None` if there are none.

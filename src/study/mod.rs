@@ -47,8 +47,10 @@ pub mod spread;
 pub mod verdicts;
 mod window;
 
-use crate::result::Remark;
-use crate::result::study::{Counted, Removal, SelectionStudy, Stratum};
+use crate::result::{
+    Remark,
+    study::{Counted, Removal, SelectionStudy, Stratum},
+};
 use case::Case;
 use fails::Fails;
 pub use reduce::reduced;

@@ -1,13 +1,15 @@
 //! One statistic over all selections: its order statistics, and the selections that do not meet its
 //! limit.
 
-use super::case::{Case, Measure, Quantity};
-use super::extremes;
-use super::fails::Fails;
-use super::halves::{Halves, Parts};
-use super::listed::Listed;
-use super::pooled::{Ends, Pooled};
-use super::spread::{Limit, order};
+use super::{
+    case::{Case, Measure, Quantity},
+    extremes,
+    fails::Fails,
+    halves::{Halves, Parts},
+    listed::Listed,
+    pooled::{Ends, Pooled},
+    spread::{Limit, order},
+};
 
 /// A statistic over all selections.
 #[derive(Clone, Debug)]

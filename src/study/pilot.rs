@@ -1,7 +1,9 @@
 //! An evenly distributed sample of a large set of values, to estimate its quartiles.
 
-use super::buckets::ordered;
-use super::groups::{Block, value};
+use super::{
+    buckets::ordered,
+    groups::{Block, value},
+};
 
 /// Size of the sample as a multiple of the square root of the number of values.
 const SAMPLE: f64 = 6.0;

@@ -5,10 +5,12 @@ use std::collections::HashMap;
 
 use rayon::prelude::*;
 
-use super::case::{Case, Kind, Measure, Stratum, choose};
-use super::fails::Fails;
-use super::halves::{Half, Halves};
-use super::listed::{Listed, weighted};
+use super::{
+    case::{Case, Kind, Measure, Stratum, choose},
+    fails::Fails,
+    halves::{Half, Halves},
+    listed::{Listed, weighted},
+};
 use crate::metrics::moments::Moments;
 
 /// Largest number of selections that are evaluated from their values.

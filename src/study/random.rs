@@ -2,8 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::Settings;
-use super::case::Case;
+use super::{Settings, case::Case};
 use crate::metrics::random::SplitMix64;
 
 /// Selections of a batch, and batches drawn between checks of the width.

@@ -1,10 +1,11 @@
 //! The smallest sets of sections whose removal changes the verdict.
 
-use super::case::{Case, Kind};
-use super::greedy;
-use super::judged::Judge;
-use crate::result::Verdict;
-use crate::result::study::Removal;
+use super::{
+    case::{Case, Kind},
+    greedy,
+    judged::Judge,
+};
+use crate::result::{Verdict, study::Removal};
 
 /// Number of sets tried; fewer where a statistic must be computed from all values.
 const MOST_TRIED: usize = 300_000;

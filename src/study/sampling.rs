@@ -1,17 +1,21 @@
 //! Random selections, where there are too many to evaluate all: the share with an interval, drawn
 //! until it is narrow enough. Statistics that can be computed for all selections are exact.
 
-use super::Settings;
-use super::case::{Case, Measure};
-use super::counted::{Counted, LimitCount, Numbers};
-use super::grid::Additive;
-use super::judged::Judge;
-use super::known::{self, known};
-use super::quartiles::estimated;
-use super::random::{Count, draw_until};
+use super::{
+    Settings,
+    case::{Case, Measure},
+    counted::{Counted, LimitCount, Numbers},
+    grid::Additive,
+    judged::Judge,
+    known::{self, known},
+    quartiles::estimated,
+    random::{Count, draw_until},
+};
 use crate::metrics::interval::wilson;
-use crate::result::study::{Share, Spread};
-use crate::result::{Reason, Verdict};
+use crate::result::{
+    Reason, Verdict,
+    study::{Share, Spread},
+};
 
 /// Number of selections whose values are kept for the quartiles.
 const KEPT: usize = 1 << 16;

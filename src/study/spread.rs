@@ -4,12 +4,14 @@
 //! below these estimates and stores those near them. If a quartile is not among the stored values,
 //! the pass is repeated with wider windows, so that the result is always exact.
 
-use super::fails::Fails;
-use super::groups::{Block, Row, Sorted, groups};
-use super::halves::Form;
-use super::listed::{Listed, ranks};
-use super::pilot::{at, sample};
-use super::window::Window;
+use super::{
+    fails::Fails,
+    groups::{Block, Row, Sorted, groups},
+    halves::Form,
+    listed::{Listed, ranks},
+    pilot::{at, sample},
+    window::Window,
+};
 
 /// Order statistics of all values.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,8 +3,7 @@
 //!
 //! The meaning of fields is not known here. [`super::keys`] lists the blocks and fields.
 
-use std::ops::Range;
-use std::sync::Arc;
+use std::{ops::Range, sync::Arc};
 
 use crate::source::{Located, Source, Span};
 

@@ -1,8 +1,10 @@
 //! Common layout of both printed forms: canonical order, blanks inside phrases, line breaks of long
 //! values.
 
-use super::document::{Block, Document, Field};
-use super::keys::{self, KINDS, Kind, Sort};
+use super::{
+    document::{Block, Document, Field},
+    keys::{self, KINDS, Kind, Sort},
+};
 
 /// Preferred largest width of a printed line, in columns.
 pub const WIDTH: usize = 110;

@@ -1,9 +1,11 @@
 //! Whether two values of a field mean the same, however they are written.
 
-use super::document::Text;
-use super::from_pest;
-use super::keys::{self, Sort};
-use super::phrase::Pick;
+use super::{
+    document::Text,
+    from_pest,
+    keys::{self, Sort},
+    phrase::Pick,
+};
 use crate::problem::Problems;
 use crate::units::{Dimension, Unit};
 

@@ -21,8 +21,7 @@ pub mod schema;
 mod spelling;
 mod split;
 
-use std::path::Path;
-use std::sync::Arc;
+use std::{path::Path, sync::Arc};
 
 use crate::problem::Problems;
 use crate::source::Source;

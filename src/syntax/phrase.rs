@@ -1,7 +1,6 @@
 //! The tree of a field's phrase, without its meaning: expressions, selections, chains, limits.
 
-use std::ops::Range;
-use std::sync::Arc;
+use std::{ops::Range, sync::Arc};
 
 use super::document::Text;
 use crate::source::{Located, Span};

@@ -1,10 +1,12 @@
 //! The canonical text form.
 
-use super::document::{Block, Document, Field};
-use super::keys::{self, Sort};
-use super::layout::{self, Page, WIDTH, columns};
-use super::rules::quoted;
-use super::spelling::spelled;
+use super::{
+    document::{Block, Document, Field},
+    keys::{self, Sort},
+    layout::{self, Page, WIDTH, columns},
+    rules::quoted,
+    spelling::spelled,
+};
 
 const INDENT: usize = 2;
 

@@ -1,9 +1,11 @@
 //! The canonical YAML form.
 
-use super::document::{Block, Document, Field};
-use super::keys::{self, KINDS, Kind, Sort};
-use super::layout::{self, Page, WIDTH, columns};
-use super::spelling::spelled;
+use super::{
+    document::{Block, Document, Field},
+    keys::{self, KINDS, Kind, Sort},
+    layout::{self, Page, WIDTH, columns},
+    spelling::spelled,
+};
 
 /// Writes the canonical YAML. Reading it gives the same document in canonical order, and printing
 /// that gives the same YAML.

@@ -1,16 +1,17 @@
 //! Reads the text form. Blocks are found by indentation, then each header and field is parsed
 //! separately, so that an error in one line hides no other.
 
-use std::ops::Range;
-use std::sync::Arc;
+use std::{ops::Range, sync::Arc};
 
-use super::document::{Block, Document, Field, Text};
-use super::keys::{Key, Kind, Sort};
-use super::layout;
-use super::lines::{self, Fault};
-use super::phrase::normalised;
-use super::rules::{self, Form, Reader};
-use super::split::{Item, RawBlock, split};
+use super::{
+    document::{Block, Document, Field, Text},
+    keys::{Key, Kind, Sort},
+    layout,
+    lines::{self, Fault},
+    phrase::normalised,
+    rules::{self, Form, Reader},
+    split::{Item, RawBlock, split},
+};
 use crate::problem::{Problem, Problems, error, problem};
 use crate::source::{Source, Span};
 

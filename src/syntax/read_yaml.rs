@@ -2,12 +2,14 @@
 
 use std::sync::Arc;
 
-use super::document::{Block, Comments, Document, Field, Text};
-use super::keys::{Key, Kind, Sort};
-use super::layout::Quotes;
-use super::nesting;
-use super::remarks::Remarks;
-use super::rules::{self, Form, Reader};
+use super::{
+    document::{Block, Comments, Document, Field, Text},
+    keys::{Key, Kind, Sort},
+    layout::Quotes,
+    nesting,
+    remarks::Remarks,
+    rules::{self, Form, Reader},
+};
 use crate::problem::{Problems, error, problem};
 use crate::source::{Source, Span};
 use crate::yaml::{self, Node, Value};

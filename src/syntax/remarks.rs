@@ -1,8 +1,6 @@
 //! The comments of a YAML text, assigned in reading order to blocks and fields.
 
-use std::iter::Peekable;
-use std::sync::Arc;
-use std::vec::IntoIter;
+use std::{iter::Peekable, sync::Arc, vec::IntoIter};
 
 use crate::source::{Source, Span};
 use crate::yaml::{self, Remark};

@@ -2,10 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use super::document::{Block, Field, Text};
-use super::keys::{KINDS, Key, Kind, NOT_ASSESSABLE, NOT_STATED, OPTIONAL};
-use super::lines;
-use super::phrase::normalised;
+use super::{
+    document::{Block, Field, Text},
+    keys::{KINDS, Key, Kind, NOT_ASSESSABLE, NOT_STATED, OPTIONAL},
+    lines,
+    phrase::normalised,
+};
 use crate::problem::{Problem, Problems, error, nearest, problem, warning};
 use crate::source::Span;
 

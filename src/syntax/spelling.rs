@@ -3,10 +3,7 @@
 //!
 //! Units stay as they are written: `400 mm/s^2` is not made `0.4 m/s^2`.
 
-use super::document::Text;
-use super::from_pest::is_word_of_language;
-use super::layout;
-use super::meaning::same_meaning;
+use super::{document::Text, from_pest::is_word_of_language, layout, meaning::same_meaning};
 use crate::source::Source;
 use crate::units::Unit;
 

@@ -1,13 +1,13 @@
 //! Splits the text form into blocks and fields by indentation, with their comments.
 
-use std::mem::take;
-use std::ops::Range;
-use std::sync::Arc;
+use std::{mem::take, ops::Range, sync::Arc};
 
-use super::document::Comments;
-use super::keys::{self, Kind};
-use super::lines;
-use super::rules::{self, Form};
+use super::{
+    document::Comments,
+    keys::{self, Kind},
+    lines,
+    rules::{self, Form},
+};
 use crate::problem::{Problems, error};
 use crate::source::Source;
 

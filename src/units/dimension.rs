@@ -1,7 +1,9 @@
 //! Exponents of the base dimensions.
 
-use std::fmt;
-use std::ops::{Div, Mul};
+use std::{
+    fmt,
+    ops::{Div, Mul},
+};
 
 /// Exponents of length, mass, time, temperature, electric current, and temperature in degrees
 /// Celsius. An angle is dimensionless.

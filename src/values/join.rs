@@ -3,8 +3,7 @@
 
 use serde_json::Value;
 
-use super::rows::into_sections;
-use super::{File, Head};
+use super::{File, Head, rows::into_sections};
 use crate::certify::{Compiled, certification};
 use crate::problem::{Problem, Problems, problem};
 use crate::result::{Certification, FileHash};

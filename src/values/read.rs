@@ -1,19 +1,22 @@
 //! Reads a file of values: first its seal, then which program wrote it, then its contents.
 
-use std::error::Error;
-use std::path::Path;
+use std::{error::Error, path::Path};
 
 use arrow_array::RecordBatch;
 use bytes::Bytes;
-use parquet::arrow::ProjectionMask;
-use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
+use parquet::arrow::{ProjectionMask, arrow_reader::ParquetRecordBatchReaderBuilder};
 use serde::de::DeserializeOwned;
 
-use super::rows::OWN;
-use super::seal::{self, Broken, Budget};
-use super::{FORM, Head, PROGRAM, write};
-use crate::data::record::{guard, guarded};
-use crate::data::text::read_file;
+use super::{
+    FORM, Head, PROGRAM,
+    rows::OWN,
+    seal::{self, Broken, Budget},
+    write,
+};
+use crate::data::{
+    record::{guard, guarded},
+    text::read_file,
+};
 use crate::problem::{Problem, problem};
 use crate::run::{Kept, Numbered};
 

@@ -1,12 +1,16 @@
 //! The table of values as columns: those that a reader needs, and beside them the exact numbers in
 //! SI, from which sections are judged.
 
-use std::collections::{BTreeSet, HashMap};
-use std::sync::Arc;
+use std::{
+    collections::{BTreeSet, HashMap},
+    sync::Arc,
+};
 
-use arrow_array::cast::AsArray;
-use arrow_array::types::{Float64Type, UInt64Type};
-use arrow_array::{Array, ArrayRef, Float64Array, RecordBatch, StringArray, UInt64Array};
+use arrow_array::{
+    Array, ArrayRef, Float64Array, RecordBatch, StringArray, UInt64Array,
+    cast::AsArray,
+    types::{Float64Type, UInt64Type},
+};
 use arrow_schema::{ArrowError, Field, Schema};
 
 use super::Values;

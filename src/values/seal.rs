@@ -2,10 +2,8 @@
 
 use std::io::{Read, Write as _};
 
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
-use flate2::read::DeflateDecoder;
-use flate2::write::DeflateEncoder;
+use base64::{Engine, engine::general_purpose::STANDARD};
+use flate2::{read::DeflateDecoder, write::DeflateEncoder};
 
 use crate::data::hash::{Hasher, sha256};
 

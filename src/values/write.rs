@@ -2,12 +2,10 @@
 
 use std::error::Error;
 
-use parquet::arrow::ArrowWriter;
-use parquet::file::metadata::KeyValue;
+use parquet::{arrow::ArrowWriter, file::metadata::KeyValue};
 use serde_json::json;
 
-use super::rows::table;
-use super::{FORM, Values, seal};
+use super::{FORM, Values, rows::table, seal};
 use crate::check::plan::Plan;
 use crate::data::write::properties;
 use crate::problem::{Problem, problem};

@@ -6,9 +6,7 @@ mod number;
 
 pub use number::digits;
 
-use std::collections::BTreeMap;
-use std::fmt;
-use std::sync::LazyLock;
+use std::{collections::BTreeMap, fmt, sync::LazyLock};
 
 use minijinja::{Environment, Value};
 use serde::{Deserialize, Serialize};

@@ -3,9 +3,7 @@
 //! The events are those of the parser of `serde-saphyr`: serde would hide quotes, aliases and all
 //! problems after the first.
 
-use std::borrow::Cow;
-use std::collections::HashMap;
-use std::sync::Arc;
+use std::{borrow::Cow, collections::HashMap, sync::Arc};
 
 use serde_saphyr::granit_parser::{self as yaml, ErrorKind, Event, Parser, ScalarStyle, ScanError};
 

@@ -1,8 +1,6 @@
 //! Checked expressions: over numbers, words and conditions, and over the samples of records.
 
-use std::fmt;
-use std::ops::Deref;
-use std::sync::Arc;
+use std::{fmt, ops::Deref, sync::Arc};
 
 use super::{Optional, Scalar, Side, Step};
 use crate::catalog::{Function, Reducer};

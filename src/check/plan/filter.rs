@@ -1,8 +1,10 @@
 //! Filters and their steps.
 
 use crate::catalog::Reducer;
-use crate::metrics::filter::{Band, Cutoff, Phase, TransferFunction, Warping};
-use crate::metrics::window::Ends;
+use crate::metrics::{
+    filter::{Band, Cutoff, Phase, TransferFunction, Warping},
+    window::Ends,
+};
 use crate::source::Span;
 use crate::units::Dimension;
 

@@ -1,8 +1,7 @@
 //! Facts: what `campaign.yaml` says beyond the layout of the folder. They are printed.
 
 use super::layout::Layout;
-use crate::data::cells::name_and_unit_text;
-use crate::data::prelude::*;
+use crate::data::{cells::name_and_unit_text, prelude::*};
 
 /// Something that `campaign.yaml` says beyond the layout.
 #[derive(Clone, Debug, PartialEq)]

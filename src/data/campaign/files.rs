@@ -4,11 +4,8 @@ use std::path::{Path, PathBuf};
 
 use indexmap::IndexSet;
 
-use super::members::RecordKind;
-use super::runs::Run;
-use super::{CAMPAIGN_FILE, Campaign};
-use crate::data::prelude::*;
-use crate::data::{place::CampaignPath, text::unreadable};
+use super::{CAMPAIGN_FILE, Campaign, members::RecordKind, runs::Run};
+use crate::data::{place::CampaignPath, prelude::*, text::unreadable};
 
 /// What a campaign is read from: absolute paths.
 #[derive(Clone, Debug)]

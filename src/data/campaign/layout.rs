@@ -1,13 +1,14 @@
 //! What `campaign.yaml` says of the layout of the folder.
 
-use super::confirmed::Confirmed;
-use super::members::{RecordFolder, record_folders};
-use super::opening::{Opening, Reader};
-use super::runs::{Run, runs};
-use super::uncertainty::{Uncertainty, uncertainties};
-use super::{Parameter, VehicleState};
-use crate::data::prelude::*;
-use crate::data::{identification::at_the_margin, origin::Origin, table::Table};
+use super::{
+    Parameter, VehicleState,
+    confirmed::Confirmed,
+    members::{RecordFolder, record_folders},
+    opening::{Opening, Reader},
+    runs::{Run, runs},
+    uncertainty::{Uncertainty, uncertainties},
+};
+use crate::data::{identification::at_the_margin, origin::Origin, prelude::*, table::Table};
 
 /// The column of the section table that names the sections; without it, the first column does.
 const SECTION_KEY: &str = "section";

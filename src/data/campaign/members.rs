@@ -1,16 +1,18 @@
 //! The records of a campaign: one folder of each kind, or several simulations or runs with a name
 //! each.
 
-use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::{
+    collections::BTreeMap,
+    sync::{Arc, Mutex, OnceLock, PoisonError},
+};
 
 use serde::{Deserialize, Serialize};
 
 use super::opening::Reader;
-use crate::data::prelude::*;
 use crate::data::{
     folder::Folder,
     place::CampaignPath,
+    prelude::*,
     record::{Format, Held, Known, Stored},
 };
 use crate::store;

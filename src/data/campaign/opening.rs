@@ -2,8 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::data::prelude::*;
-use crate::data::{folder::Folder, place::CampaignPath, table::Table};
+use crate::data::{folder::Folder, place::CampaignPath, prelude::*, table::Table};
 use crate::yaml;
 
 /// A file that was read, and its fingerprint.

@@ -1,20 +1,19 @@
 //! Where the records of a campaign are: one folder or several of each kind, a file for each
 //! section.
 
-use std::collections::HashSet;
-use std::io;
-use std::path::Path;
-use std::sync::Arc;
+use std::{collections::HashSet, io, path::Path, sync::Arc};
 
-use super::Campaign;
-use super::layout::Edited;
-use super::members::{self, RecordFolder, RecordKind, WhichRecord};
-use super::opening::{Changed, ReadFile};
-use super::runs::RunStretch;
-use crate::data::prelude::*;
+use super::{
+    Campaign,
+    layout::Edited,
+    members::{self, RecordFolder, RecordKind, WhichRecord},
+    opening::{Changed, ReadFile},
+    runs::RunStretch,
+};
 use crate::data::{
     folder::{check_file_name, names_in},
     place::CampaignPath,
+    prelude::*,
     record::{Format, Record, RecordSource, Wanted},
     table::Cell,
     text::{other_format, unreadable},

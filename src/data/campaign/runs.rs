@@ -1,15 +1,16 @@
 //! Runs of a campaign: one record of each kind over a long stretch, of which sections are parts.
 
-use std::path::Path;
-use std::sync::Arc;
+use std::{path::Path, sync::Arc};
 
-use super::Campaign;
-use super::members::RecordKind;
-use super::opening::{Opening, Reader};
-use crate::data::prelude::*;
+use super::{
+    Campaign,
+    members::RecordKind,
+    opening::{Opening, Reader},
+};
 use crate::data::{
     cells::name_and_unit_text,
     folder::{check_file_name, names_in},
+    prelude::*,
     record::{Format, Held, Known, RecordSource},
     table::{Cell, Table},
     text::unreadable,

@@ -1,7 +1,6 @@
 //! What a diagnosis tolerates of a channel against its uncertainty.
 
-use super::facts::Fact;
-use super::uncertainty::Uncertainty;
+use super::{facts::Fact, uncertainty::Uncertainty};
 use crate::data::prelude::*;
 
 /// The map of `campaign.yaml` with what a diagnosis tolerates.

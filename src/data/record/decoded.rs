@@ -1,9 +1,11 @@
 //! Decoded numbers that neighbouring stretches have in common: decoded once, and kept for the next
 //! stretch within a bound.
 
-use std::collections::BTreeMap;
-use std::path::PathBuf;
-use std::sync::{Arc, Mutex};
+use std::{
+    collections::BTreeMap,
+    path::PathBuf,
+    sync::{Arc, Mutex},
+};
 
 use super::recent::{Recent, locked};
 

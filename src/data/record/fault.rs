@@ -1,8 +1,7 @@
 //! Slow parsing of an irregular row, with a description of its fault.
 
 use super::Column;
-use crate::data::prelude::*;
-use crate::data::{cells, faults::Faults};
+use crate::data::{cells, faults::Faults, prelude::*};
 
 /// A line of the file without its line break.
 pub struct Line<'a> {

@@ -1,12 +1,11 @@
 //! What is wrong with the header of a record, told once for all columns that have it.
 
-use std::io::BufRead;
-use std::path::Path;
+use std::{io::BufRead, path::Path};
 
 use super::Wanted;
-use crate::data::prelude::*;
 use crate::data::{
     cells::{self, Heading},
+    prelude::*,
     text::open_text,
 };
 use crate::problem::nearest;

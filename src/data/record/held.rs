@@ -1,15 +1,19 @@
 //! Bytes of files that neighbouring stretches have in common: read once, and kept for the next
 //! stretch within a bound.
 
-use std::ops::Range;
-use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex};
+use std::{
+    ops::Range,
+    path::{Path, PathBuf},
+    sync::{Arc, Mutex},
+};
 
 use bytes::Bytes;
 
-use super::decoded::Decoded;
-use super::layout::Layout;
-use super::recent::{Recent, locked};
+use super::{
+    decoded::Decoded,
+    layout::Layout,
+    recent::{Recent, locked},
+};
 
 /// Most bytes that are kept in all: both sides and the track of a run of 60 km with 24 channels, or
 /// some row groups of longer ones. It bounds the memory of a worker, whatever the length of the

@@ -1,15 +1,18 @@
 //! What is known of a file of which several stretches are read: its hash, and of a text where in it
 //! which part of the axis is.
 
-use std::ops::Range;
-use std::sync::{Arc, Mutex, OnceLock};
+use std::{
+    ops::Range,
+    sync::{Arc, Mutex, OnceLock},
+};
 
-use super::Column;
-use super::held::Held;
-use super::recent::locked;
-use super::stored::{Stored, refused};
-use crate::data::place::CampaignPath;
-use crate::data::prelude::*;
+use super::{
+    Column,
+    held::Held,
+    recent::locked,
+    stored::{Stored, refused},
+};
+use crate::data::{place::CampaignPath, prelude::*};
 use crate::store::{Object, Refused};
 
 /// Known once for all that share it; computed by the first who asks while the others wait.

@@ -1,21 +1,22 @@
 //! What the footer of a Parquet file says: columns with names and units, and row groups.
 
-use std::error::Error;
-use std::ops::Range;
-use std::panic::AssertUnwindSafe;
-use std::sync::Arc;
+use std::{error::Error, ops::Range, panic::AssertUnwindSafe, sync::Arc};
 
 use arrow_schema::{DataType, Schema};
 use bytes::Bytes;
-use parquet::arrow::arrow_reader::{ArrowReaderMetadata, ArrowReaderOptions};
-use parquet::arrow::parquet_to_arrow_schema;
-use parquet::file::metadata::{ColumnChunkMetaData, ParquetMetaData, ParquetMetaDataReader};
+use parquet::{
+    arrow::{
+        arrow_reader::{ArrowReaderMetadata, ArrowReaderOptions},
+        parquet_to_arrow_schema,
+    },
+    file::metadata::{ColumnChunkMetaData, ParquetMetaData, ParquetMetaDataReader},
+};
 
 use super::guard;
-use crate::data::prelude::*;
 use crate::data::{
     cells::{Heading, duplicates, name_and_unit, shortened},
     checksum::{self, Sums},
+    prelude::*,
     write::Digits,
 };
 

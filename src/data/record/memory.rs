@@ -1,22 +1,25 @@
 //! A record in memory: columns as Arrow arrays, which are not copied.
 
-use std::ops::Range;
-use std::sync::{Arc, OnceLock};
+use std::{
+    ops::Range,
+    sync::{Arc, OnceLock},
+};
 
-use arrow_array::cast::AsArray;
-use arrow_array::types::Float64Type;
-use arrow_array::{Array, RecordBatch};
+use arrow_array::{Array, RecordBatch, cast::AsArray, types::Float64Type};
 use arrow_schema::{DataType, Schema};
 
-use super::columnar::{append, no_rows, numbers, value_at, wrong};
-use super::layout::{headings_of, not_numbers};
-use super::stretch::{Run, Stretch, axis_of, values};
-use super::{Column, Wanted, find_columns};
-use crate::data::prelude::*;
+use super::{
+    Column, Wanted,
+    columnar::{append, no_rows, numbers, value_at, wrong},
+    find_columns,
+    layout::{headings_of, not_numbers},
+    stretch::{Run, Stretch, axis_of, values},
+};
 use crate::data::{
     cells::{Heading, names},
     faults::Faults,
     hash::Hasher,
+    prelude::*,
 };
 
 /// Numbers hashed at a time where they do not lie as 64-bit numbers in memory; it does not change

@@ -2,8 +2,7 @@
 
 use std::path::Path;
 
-use super::text::no_rows;
-use super::{Format, columnar, fault, listed_headings};
+use super::{Format, columnar, fault, listed_headings, text::no_rows};
 use crate::data::{
     cells::{self, RawCell},
     faults::Faults,

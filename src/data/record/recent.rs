@@ -1,7 +1,9 @@
 //! What was used last, within a bound.
 
-use std::collections::VecDeque;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::{
+    collections::VecDeque,
+    sync::{Mutex, MutexGuard, PoisonError},
+};
 
 /// Values with their sizes; the one that was used last is the first.
 #[derive(Debug)]

@@ -1,18 +1,18 @@
 //! Where a record is: in a file, in an object store, or in memory. All readers of records go through
 //! here.
 
-use std::ops::Range;
-use std::path::Path;
-use std::sync::Arc;
+use std::{ops::Range, path::Path, sync::Arc};
 
-use super::columnar::{self, At};
-use super::known::Known;
-use super::memory::Frame;
-use super::stored::Stored;
-use super::stretch::{Block, Run};
-use super::{Column, Format, Record, Wanted, text};
-use crate::data::prelude::*;
-use crate::data::{cells::Heading, place::CampaignPath};
+use super::{
+    Column, Format, Record, Wanted,
+    columnar::{self, At},
+    known::Known,
+    memory::Frame,
+    stored::Stored,
+    stretch::{Block, Run},
+    text,
+};
+use crate::data::{cells::Heading, place::CampaignPath, prelude::*};
 
 /// A record that can be read.
 #[derive(Clone, Debug)]

@@ -1,18 +1,24 @@
 //! Records as texts: block by block, whole, or a stretch of them by an index of their rows.
 
-use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
-use std::ops::Range;
-use std::path::Path;
+use std::{
+    io::{BufRead, BufReader, Read, Seek, SeekFrom},
+    ops::Range,
+    path::Path,
+};
 
-use super::columnar::MAGIC;
-use super::known::{Index, Known, KnownFile, Mark};
-use super::stretch::{Block, Run, Stretch, axis_of, values};
-use super::{Column, Wanted, fault, find_columns, header_fault, listed_headings, rows};
-use crate::data::prelude::*;
+use super::{
+    Column, Wanted,
+    columnar::MAGIC,
+    fault, find_columns, header_fault,
+    known::{Index, Known, KnownFile, Mark},
+    listed_headings, rows,
+    stretch::{Block, Run, Stretch, axis_of, values},
+};
 use crate::data::{
     cells::{self, Heading, names},
     faults::Faults,
     hash::Hasher,
+    prelude::*,
     text::{self, LONGEST_LINE, decode_from, long_line, open_text, read_line_of, unreadable},
 };
 

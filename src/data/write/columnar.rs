@@ -1,19 +1,25 @@
 //! Records as Parquet files. The settings are fixed, so that the same numbers give the same bytes.
 
-use std::collections::HashMap;
-use std::io::{self, Write as _};
-use std::ops::Range;
-use std::sync::Arc;
+use std::{
+    collections::HashMap,
+    io::{self, Write as _},
+    ops::Range,
+    sync::Arc,
+};
 
 use arrow_array::{ArrayRef, Float64Array, RecordBatch, StringArray};
 use arrow_schema::{DataType, Field, Schema};
 use flate2::write::DeflateEncoder;
-use parquet::arrow::ArrowWriter;
-use parquet::basic::{Compression, ZstdLevel};
-use parquet::errors::ParquetError;
-use parquet::file::metadata::KeyValue;
-use parquet::file::properties::{EnabledStatistics, WriterProperties, WriterPropertiesBuilder};
-use parquet::schema::types::ColumnPath;
+use parquet::{
+    arrow::ArrowWriter,
+    basic::{Compression, ZstdLevel},
+    errors::ParquetError,
+    file::{
+        metadata::KeyValue,
+        properties::{EnabledStatistics, WriterProperties, WriterPropertiesBuilder},
+    },
+    schema::types::ColumnPath,
+};
 
 use super::digits::Digits;
 use crate::data::checksum;

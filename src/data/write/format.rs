@@ -2,10 +2,11 @@
 
 use std::fmt::Write;
 
-use super::columnar::{FileColumn, Values, parquet, rows_of};
-use super::digits::Digits;
-use crate::data::format::Format;
-use crate::data::prelude::*;
+use super::{
+    columnar::{FileColumn, Values, parquet, rows_of},
+    digits::Digits,
+};
+use crate::data::{format::Format, prelude::*};
 
 /// A column to be written: values in SI units, its unit, and its number of decimals.
 #[derive(Clone, Copy, Debug)]

@@ -3,9 +3,11 @@
 
 use crate::diagnose::checks::channels::{View, part};
 use crate::diagnose::fit::fitter::{Fitted, Fitter};
-use crate::diagnose::linearise::candidate::Candidate;
-use crate::diagnose::linearise::mask::Mask;
-use crate::diagnose::linearise::whiten::{Covariance, dot};
+use crate::diagnose::linearise::{
+    candidate::Candidate,
+    mask::Mask,
+    whiten::{Covariance, dot},
+};
 use crate::diagnose::run::Found;
 
 /// Distance of two causes, in standard deviations of the allowed difference.

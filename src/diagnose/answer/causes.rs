@@ -4,8 +4,7 @@ use indexmap::IndexMap;
 use serde_json::json;
 
 use crate::diagnose::checks::stability::Stability;
-use crate::diagnose::fit::fitter::Fitted;
-use crate::diagnose::fit::set::plausible;
+use crate::diagnose::fit::{fitter::Fitted, set::plausible};
 use crate::diagnose::inputs::Inputs;
 use crate::diagnose::levels::common::NINETY;
 use crate::diagnose::linearise::candidate::Candidate;

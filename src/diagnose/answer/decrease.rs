@@ -4,20 +4,24 @@
 use rayon::prelude::*;
 
 use crate::diagnose::checks::channels::View;
-use crate::diagnose::fit::fitter::{Fitted, Fitter, Member};
-use crate::diagnose::fit::joint;
-use crate::diagnose::levels::common::RESAMPLES;
-use crate::diagnose::levels::decrease::{FOLDS, TOUCHED};
-use crate::diagnose::linearise::candidate::Candidate;
-use crate::diagnose::linearise::mask::Mask;
-use crate::diagnose::linearise::whiten::dot;
+use crate::diagnose::fit::{
+    fitter::{Fitted, Fitter, Member},
+    joint,
+};
+use crate::diagnose::levels::{
+    common::RESAMPLES,
+    decrease::{FOLDS, TOUCHED},
+};
+use crate::diagnose::linearise::{candidate::Candidate, mask::Mask, whiten::dot};
 use crate::diagnose::observe::observed::Observed;
 use crate::diagnose::run::Found;
 use crate::effects::{Applied, Catalogue, Confined, Gauss, Signals};
 use crate::problem::Problem;
-use crate::result::StatisticName::{Mean, StandardDeviation};
-use crate::result::diagnosis::{QuantityShrink, Shrink, Touched};
-use crate::result::{Certification, QuantityResult, StatisticName};
+use crate::result::{
+    Certification, QuantityResult,
+    StatisticName::{self, Mean, StandardDeviation},
+    diagnosis::{QuantityShrink, Shrink, Touched},
+};
 use crate::simulate::{Simulator, simulate};
 
 /// The chosen effects with the sizes of the members.

@@ -6,8 +6,10 @@ use crate::diagnose::run::Found;
 use crate::diagnose::settings::Settings;
 use crate::effects::Signals;
 use crate::metrics::filter::{Band, Cutoff, Filter, Phase};
-use crate::result::Curve;
-use crate::result::diagnosis::{Panel, Picture};
+use crate::result::{
+    Curve,
+    diagnosis::{Panel, Picture},
+};
 use crate::simulate::{Section, Units};
 
 /// The sections with the largest gap, each with the channels of one group and position; for forces

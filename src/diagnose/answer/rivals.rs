@@ -4,17 +4,15 @@
 use super::apart::{Apart, apart};
 use super::causes::{cause, title};
 use super::verdict::Verdict;
-use crate::diagnose::fit::fitter::Fitted;
-use crate::diagnose::fit::set::plausible;
+use crate::diagnose::fit::{fitter::Fitted, set::plausible};
 use crate::diagnose::inputs::Inputs;
-use crate::diagnose::levels::rivals::{
-    NEAREST, OUTSIDE, OUTSIDE_SUSPECTED, OUTSIDE_UNEXPLAINED, TEMPERATURE, TOLD_APART,
+use crate::diagnose::levels::{
+    rivals::{NEAREST, OUTSIDE, OUTSIDE_SUSPECTED, OUTSIDE_UNEXPLAINED, TEMPERATURE, TOLD_APART},
+    search::TOLERANCE_SD,
 };
-use crate::diagnose::levels::search::TOLERANCE_SD;
 use crate::diagnose::run::{Found, deviations};
 use crate::effects::Effect;
-use crate::result::Statement;
-use crate::result::diagnosis::Cause;
+use crate::result::{Statement, diagnosis::Cause};
 
 /// Sets in which another effect replaces one member, and whether the data discriminate them from
 /// the answer.

@@ -1,11 +1,15 @@
 //! The verdict of a diagnosis: one table of rules over what was found, of which the first that
 //! applies decides.
 
-use crate::diagnose::levels::common::NINETY;
-use crate::diagnose::levels::verdict::{MISFIT, ROOMY};
+use crate::diagnose::levels::{
+    common::NINETY,
+    verdict::{MISFIT, ROOMY},
+};
 use crate::diagnose::run::Found;
-use crate::result::diagnosis::{Fit, Shrink};
-use crate::result::{Remark, Statement, Verdict as OfProtocol};
+use crate::result::{
+    Remark, Statement, Verdict as OfProtocol,
+    diagnosis::{Fit, Shrink},
+};
 
 /// The verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,25 +4,31 @@ use super::causes::{cause, title};
 use super::detectable::detectable;
 use super::rivals::{ambiguity, discriminating, neither, probabilities};
 use super::verdict::{self, Facts, Verdict};
-use crate::diagnose::checks::channels::{Lack, unexplained};
-use crate::diagnose::checks::further::Free;
-use crate::diagnose::checks::heterogeneity::{Heterogeneity, certain};
-use crate::diagnose::fit::fitter::Fitted;
-use crate::diagnose::fit::set::{Refused, plausible};
+use crate::diagnose::checks::{
+    channels::{Lack, unexplained},
+    further::Free,
+    heterogeneity::{Heterogeneity, certain},
+};
+use crate::diagnose::fit::{
+    fitter::Fitted,
+    set::{Refused, plausible},
+};
 use crate::diagnose::inputs::Inputs;
-use crate::diagnose::levels::channels::LACK;
-use crate::diagnose::levels::common::NINETY;
-use crate::diagnose::levels::further::{LEFT, TOLERANCE};
-use crate::diagnose::levels::search::{MOST, TOLERANCE_SD};
-use crate::diagnose::levels::words::{TELLING, TOLD, TOLD_NEAREST};
+use crate::diagnose::levels::{
+    channels::LACK,
+    common::NINETY,
+    further::{LEFT, TOLERANCE},
+    search::{MOST, TOLERANCE_SD},
+    words::{TELLING, TOLD, TOLD_NEAREST},
+};
 use crate::diagnose::observe::layout::Kind;
 use crate::diagnose::run::{Found, chi, deviations};
 use crate::effects::CHANNEL;
-use crate::result::diagnosis::{
-    Cause, Diagnosis, Drift, Fault, HeldOut, How, Nearest, Shrink, UsedTolerance, Vetoed,
-};
 use crate::result::{
     FORMAT, OutlyingSection, RemainsOf, Remark, Statement, THIS, Verdict as OfProtocol,
+    diagnosis::{
+        Cause, Diagnosis, Drift, Fault, HeldOut, How, Nearest, Shrink, UsedTolerance, Vetoed,
+    },
 };
 use crate::simulate::Units;
 use crate::words;

@@ -2,8 +2,7 @@
 
 use crate::diagnose::levels::channels::{FAR_BEYOND, LACK, MOST_LEFT, ONE_IN};
 use crate::diagnose::linearise::whiten::Covariance;
-use crate::diagnose::observe::layout::Kind;
-use crate::diagnose::observe::observations::Observations;
+use crate::diagnose::observe::{layout::Kind, observations::Observations};
 
 /// A part of the data that is fitted separately: some features of some sections.
 #[derive(Clone, Debug)]

@@ -1,15 +1,21 @@
 //! What is left for further candidates, nameable or not: tolerances, parameters outside the
 //! catalogue, effects that do not meet a requirement.
 
-use crate::diagnose::fit::fitter::{Fitted, Fitter, Member};
-use crate::diagnose::fit::set::{Bars, Chosen};
+use crate::diagnose::fit::{
+    fitter::{Fitted, Fitter, Member},
+    set::{Bars, Chosen},
+};
 use crate::diagnose::iterate::point::Linearisation;
-use crate::diagnose::levels::further::{POSSIBLE, REFUTES, SAME, SPAN};
-use crate::diagnose::levels::search::TOLERANCE_SD;
-use crate::diagnose::linearise::candidate::{Candidate, Node};
-use crate::diagnose::linearise::covariance::Sensitivity;
-use crate::diagnose::linearise::mask::Mask;
-use crate::diagnose::linearise::whiten::dot;
+use crate::diagnose::levels::{
+    further::{POSSIBLE, REFUTES, SAME, SPAN},
+    search::TOLERANCE_SD,
+};
+use crate::diagnose::linearise::{
+    candidate::{Candidate, Node},
+    covariance::Sensitivity,
+    mask::Mask,
+    whiten::dot,
+};
 use crate::diagnose::search::{Far, Search, with, without};
 use crate::result::diagnosis::UsedTolerance;
 use crate::units::Unit;

@@ -8,15 +8,15 @@
 use nalgebra::{Cholesky, DMatrix, DVector};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use crate::diagnose::fit::fitter::Fitter;
-use crate::diagnose::fit::joint::metric;
-use crate::diagnose::fit::set::Chosen;
+use crate::diagnose::fit::{fitter::Fitter, joint::metric, set::Chosen};
 use crate::diagnose::levels::heterogeneity::{CHANCE, SEEN};
 use crate::diagnose::linearise::whiten::dot;
-use crate::diagnose::observe::covariates::{Covariate, DIRECTION, covariates};
-use crate::diagnose::observe::layout::Kind;
-use crate::diagnose::observe::observations::Observations;
-use crate::diagnose::observe::strata::stratum_of;
+use crate::diagnose::observe::{
+    covariates::{Covariate, DIRECTION, covariates},
+    layout::Kind,
+    observations::Observations,
+    strata::stratum_of,
+};
 use crate::diagnose::settings::Settings;
 
 /// A division of the features: a label for each feature of each section; none where it is left out.

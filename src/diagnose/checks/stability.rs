@@ -4,10 +4,11 @@
 
 use rayon::prelude::*;
 
-use crate::diagnose::fit::fitter::Fitter;
-use crate::diagnose::fit::set::Chosen;
-use crate::diagnose::levels::common::RESAMPLES;
-use crate::diagnose::levels::stability::{FIRST, NEAR};
+use crate::diagnose::fit::{fitter::Fitter, set::Chosen};
+use crate::diagnose::levels::{
+    common::RESAMPLES,
+    stability::{FIRST, NEAR},
+};
 use crate::diagnose::linearise::path::BySection;
 use crate::effects::Gauss;
 

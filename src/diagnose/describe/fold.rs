@@ -1,8 +1,7 @@
 //! Folding of left and right curves: the outer wheel of one takes the place of the inner wheel of
 //! the other.
 
-use crate::diagnose::observe::layout::Kind;
-use crate::diagnose::observe::observations::Observations;
+use crate::diagnose::observe::{layout::Kind, observations::Observations};
 use crate::diagnose::settings::Settings;
 
 /// The channel that replaces each channel in mirrored sections, and the levels that change sign

@@ -6,8 +6,7 @@ use crate::diagnose::linearise::whiten::Covariance;
 use crate::diagnose::observe::layout::Kind;
 use crate::diagnose::run::Found;
 use crate::diagnose::settings::Settings;
-use crate::result::Statement;
-use crate::result::diagnosis::Invariant;
+use crate::result::{Statement, diagnosis::Invariant};
 use crate::simulate::Units;
 
 /// Symmetry of a deviation: the same in all sections, or with a sign that changes with the curve;

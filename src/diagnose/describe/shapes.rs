@@ -4,19 +4,28 @@
 //! Sections are treated as repetitions: intervals and the choice between the two scalings are by
 //! bootstrap over sections, so that no model of noise is needed.
 
-use crate::diagnose::levels::common::RESAMPLES;
-use crate::diagnose::levels::shapes::{
-    ALIKE, ERRORS, LARGE, LEAST_POINTS, RESOLVED, SPREAD, SURE, TO_THE_OCTAVE, TURNS, USABLE, WHOLE,
+use crate::diagnose::levels::{
+    common::RESAMPLES,
+    shapes::{
+        ALIKE, ERRORS, LARGE, LEAST_POINTS, RESOLVED, SPREAD, SURE, TO_THE_OCTAVE, TURNS, USABLE,
+        WHOLE,
+    },
 };
-use crate::diagnose::observe::layout::{Piece, Spectrum};
-use crate::diagnose::observe::observations::Observations;
-use crate::diagnose::observe::observed::piece;
+use crate::diagnose::observe::{
+    layout::{Piece, Spectrum},
+    observations::Observations,
+    observed::piece,
+};
 use crate::diagnose::settings::{Settings, Shape as Wanted};
 use crate::effects::{Gauss, Signals};
-use crate::metrics::percentile::{Method, percentiles};
-use crate::metrics::statistics::{Divisor, standard_deviation};
-use crate::result::Statement;
-use crate::result::diagnosis::{Ratio, Shape, Strongest};
+use crate::metrics::{
+    percentile::{Method, percentiles},
+    statistics::{Divisor, standard_deviation},
+};
+use crate::result::{
+    Statement,
+    diagnosis::{Ratio, Shape, Strongest},
+};
 use crate::words;
 
 /// All groups of channels whose dynamic content is compared; none where the catalogue does not

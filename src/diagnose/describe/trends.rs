@@ -3,19 +3,25 @@
 
 use statrs::distribution::{ContinuousCDF, Normal};
 
-use crate::diagnose::describe::cells::{Cell, cells, kinds, positions, significant_up_to};
-use crate::diagnose::describe::fold::Fold;
+use crate::diagnose::describe::{
+    cells::{Cell, cells, kinds, positions, significant_up_to},
+    fold::Fold,
+};
 use crate::diagnose::levels::{
     common::NINETY,
     trends::{CERTAIN, TOGETHER},
 };
 use crate::diagnose::linearise::whiten::Covariance;
-use crate::diagnose::observe::covariates::{Covariate, covariates};
-use crate::diagnose::observe::layout::Kind;
+use crate::diagnose::observe::{
+    covariates::{Covariate, covariates},
+    layout::Kind,
+};
 use crate::diagnose::run::Found;
 use crate::diagnose::settings::{Position, Settings};
-use crate::result::Statement;
-use crate::result::diagnosis::{Slope, Trend};
+use crate::result::{
+    Statement,
+    diagnosis::{Slope, Trend},
+};
 use crate::simulate::Units;
 
 /// All trends in increasing order of p-value, and the correlated covariates, in words.

@@ -5,11 +5,13 @@ use std::collections::HashMap;
 use nalgebra::DMatrix;
 
 use crate::diagnose::levels::causes::INTERPOLATION;
-use crate::diagnose::linearise::candidate::{Candidate, Node, between, blend};
-use crate::diagnose::linearise::mask::{Mask, allowed};
-use crate::diagnose::linearise::metric::reduced;
-use crate::diagnose::linearise::path::{BySection, Closest, Path, closest};
-use crate::diagnose::linearise::whiten::{Whitener, dot};
+use crate::diagnose::linearise::{
+    candidate::{Candidate, Node, between, blend},
+    mask::{Mask, allowed},
+    metric::reduced,
+    path::{BySection, Closest, Path, closest},
+    whiten::{Whitener, dot},
+};
 
 /// A candidate and a mask, by number.
 pub type Member = (usize, usize);

@@ -11,10 +11,12 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::diagnose::fit::fitter::{Fitted, Fitter, Member};
 use crate::diagnose::levels::joint::{ALIKE, CONVERGED, ROUNDS, TURNS};
-use crate::diagnose::linearise::candidate::blend;
-use crate::diagnose::linearise::metric::Metric;
-use crate::diagnose::linearise::path::{Closest, Path, closest, products};
-use crate::diagnose::linearise::whiten::{dot, less};
+use crate::diagnose::linearise::{
+    candidate::blend,
+    metric::Metric,
+    path::{Closest, Path, closest, products},
+    whiten::{dot, less},
+};
 
 /// A set of effects fitted together.
 #[derive(Clone, Debug)]

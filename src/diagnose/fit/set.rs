@@ -3,9 +3,11 @@
 use std::sync::Arc;
 
 use crate::diagnose::fit::fitter::{Fitted, Member};
-use crate::diagnose::linearise::candidate::Candidate;
-use crate::diagnose::linearise::metric::Metric;
-use crate::diagnose::linearise::whiten::{dot, less};
+use crate::diagnose::linearise::{
+    candidate::Candidate,
+    metric::Metric,
+    whiten::{dot, less},
+};
 
 /// Requirements on a member.
 #[derive(Clone, Copy, Debug)]

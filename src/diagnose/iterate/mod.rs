@@ -5,17 +5,21 @@ pub mod point;
 
 use std::sync::Arc;
 
-use crate::diagnose::fit::fitter::{Fitted, Fitter, Known, Member};
-use crate::diagnose::fit::set::{Bars, Chosen, Refused, plausible};
-use crate::diagnose::iterate::point::{Linearisation, Linearise};
-use crate::diagnose::levels::iterate::{
-    FLOOR, FLOOR_EXACT, NEAR, NEAREST, POLISHED, REFUSED, ROUNDS, STILL, WORTH,
+use crate::diagnose::fit::{
+    fitter::{Fitted, Fitter, Known, Member},
+    set::{Bars, Chosen, Refused, plausible},
 };
-use crate::diagnose::levels::search::{TOLERANCE_SD, TRIED};
+use crate::diagnose::iterate::point::{Linearisation, Linearise};
+use crate::diagnose::levels::{
+    iterate::{FLOOR, FLOOR_EXACT, NEAR, NEAREST, POLISHED, REFUSED, ROUNDS, STILL, WORTH},
+    search::{TOLERANCE_SD, TRIED},
+};
 use crate::diagnose::linearise::candidate::Candidate;
 use crate::diagnose::observe::bench::Runs;
-use crate::diagnose::search::calibration::{Draws, limit};
-use crate::diagnose::search::{Far, Fault, Search};
+use crate::diagnose::search::{
+    Far, Fault, Search,
+    calibration::{Draws, limit},
+};
 use crate::result::diagnosis::Calibration;
 
 /// What the iteration needs.

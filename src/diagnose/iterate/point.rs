@@ -5,17 +5,23 @@
 use std::sync::Arc;
 
 use crate::diagnose::fit::fitter::Fitted;
-use crate::diagnose::levels::covariance::NOTHING;
-use crate::diagnose::levels::further::SAME;
-use crate::diagnose::levels::point::{ALIKE, APART, JUMP, MATTERS};
-use crate::diagnose::linearise::candidate::{Beside, Candidate, Node};
-use crate::diagnose::linearise::covariance::{Sensitivity, covariance, expect};
-use crate::diagnose::linearise::mask::Mask;
-use crate::diagnose::linearise::sensitivity::sensitivities;
-use crate::diagnose::linearise::whiten::{Covariance, Whitener, dot, less, plus};
-use crate::diagnose::linearise::workshop::{Workshop, applied};
-use crate::diagnose::observe::bench::{Bench, Runs, Set};
-use crate::diagnose::observe::layout::Kind;
+use crate::diagnose::levels::{
+    covariance::NOTHING,
+    further::SAME,
+    point::{ALIKE, APART, JUMP, MATTERS},
+};
+use crate::diagnose::linearise::{
+    candidate::{Beside, Candidate, Node},
+    covariance::{Sensitivity, covariance, expect},
+    mask::Mask,
+    sensitivity::sensitivities,
+    whiten::{Covariance, Whitener, dot, less, plus},
+    workshop::{Workshop, applied},
+};
+use crate::diagnose::observe::{
+    bench::{Bench, Runs, Set},
+    layout::Kind,
+};
 use crate::diagnose::settings::Settings;
 use crate::effects::{Action, Applied};
 use crate::simulate::Plan;

@@ -2,13 +2,17 @@
 //! discrepancy of the model.
 
 use crate::diagnose::levels::covariance::{BAND_SCATTER, GAIN, GAIN_SCATTER, NOTHING, ZERO_POINT};
-use crate::diagnose::linearise::response::ResponseError;
-use crate::diagnose::linearise::standing::{Keyed, Standing};
-use crate::diagnose::linearise::whiten::Covariance;
-use crate::diagnose::observe::increments::Increments;
-use crate::diagnose::observe::layout::Kind;
-use crate::diagnose::observe::observations::Observations;
-use crate::diagnose::observe::strata::{strata, stratum_of};
+use crate::diagnose::linearise::{
+    response::ResponseError,
+    standing::{Keyed, Standing},
+    whiten::Covariance,
+};
+use crate::diagnose::observe::{
+    increments::Increments,
+    layout::Kind,
+    observations::Observations,
+    strata::{strata, stratum_of},
+};
 use crate::diagnose::settings::{Discrepancy, FeatureKind, Moves, Over, Settings, Times};
 
 /// Change of the simulated features with a tolerated parameter, per standard deviation.

@@ -2,8 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::data::Campaign;
-use crate::data::campaign::Fact;
+use crate::data::{Campaign, campaign::Fact};
 use crate::diagnose::settings::Settings;
 use crate::problem::{Problem, Problems};
 use crate::units::Unit;

@@ -2,15 +2,19 @@
 //! weighings.
 
 use crate::diagnose::inputs::{Inputs, value_of};
-use crate::diagnose::linearise::covariance::{Sensitivity, discrepancies};
-use crate::diagnose::linearise::declared::Declared;
-use crate::diagnose::linearise::recorded::{Recorded, as_recorded};
-use crate::diagnose::linearise::references::learnt;
-use crate::diagnose::linearise::sensitivity::sensitivities;
-use crate::diagnose::linearise::standing::Standing;
-use crate::diagnose::linearise::whiten::less;
-use crate::diagnose::observe::bench::{Bench, Runs};
-use crate::diagnose::observe::observations::Observations;
+use crate::diagnose::linearise::{
+    covariance::{Sensitivity, discrepancies},
+    declared::Declared,
+    recorded::{Recorded, as_recorded},
+    references::learnt,
+    sensitivity::sensitivities,
+    standing::Standing,
+    whiten::less,
+};
+use crate::diagnose::observe::{
+    bench::{Bench, Runs},
+    observations::Observations,
+};
 use crate::problem::Problems;
 
 /// The simulation without effects, and its allowed difference.

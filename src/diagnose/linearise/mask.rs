@@ -1,8 +1,7 @@
 //! Sections to which an effect is confined.
 
 use super::candidate::Candidate;
-use crate::diagnose::observe::observations::Observations;
-use crate::diagnose::observe::observed::Observed;
+use crate::diagnose::observe::{observations::Observations, observed::Observed};
 use crate::diagnose::settings::Settings;
 
 /// Sections to which an effect is confined; mask 0 is all sections.

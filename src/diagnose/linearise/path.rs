@@ -1,10 +1,8 @@
 //! The whitened path of a candidate, and the best fit on it.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use nalgebra::DMatrix;
-
-use std::sync::Arc;
 
 use super::candidate::{Beside, Candidate, between};
 use crate::diagnose::levels::fit::APART;

@@ -4,8 +4,10 @@ use rayon::prelude::*;
 
 use crate::diagnose::levels::recorded::SEED;
 use crate::diagnose::linearise::sensitivity::expected;
-use crate::diagnose::observe::bench::{Bench, Runs};
-use crate::diagnose::observe::observations::Observations;
+use crate::diagnose::observe::{
+    bench::{Bench, Runs},
+    observations::Observations,
+};
 use crate::diagnose::settings::Settings;
 use crate::effects::{Gauss, Signals};
 use crate::simulate::{Task, incremented};

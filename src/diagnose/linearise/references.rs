@@ -3,13 +3,17 @@
 use crate::data::Campaign;
 use crate::diagnose::inputs::{Inputs, Reference, value_of};
 use crate::diagnose::levels::standing::OWN;
-use crate::diagnose::linearise::covariance::{covariance, discrepancies, expect};
-use crate::diagnose::linearise::declared::Declared;
-use crate::diagnose::linearise::sensitivity::sensitivities;
-use crate::diagnose::linearise::standing::{Shown, Standing};
-use crate::diagnose::linearise::whiten::less;
-use crate::diagnose::observe::bench::{Bench, Runs};
-use crate::diagnose::observe::observations::Observations;
+use crate::diagnose::linearise::{
+    covariance::{covariance, discrepancies, expect},
+    declared::Declared,
+    sensitivity::sensitivities,
+    standing::{Shown, Standing},
+    whiten::less,
+};
+use crate::diagnose::observe::{
+    bench::{Bench, Runs},
+    observations::Observations,
+};
 use crate::diagnose::settings::{Over, Settings};
 use crate::problem::{Problem, Problems};
 use crate::yaml::{Key, Node};

@@ -6,9 +6,7 @@
 //! campaign; each group of channels has a further one, and each group of channels in each stratum.
 //! An operation on the signals has no such error in the fit.
 
-use crate::diagnose::observe::layout::Kind;
-use crate::diagnose::observe::observations::Observations;
-use crate::diagnose::observe::strata::strata;
+use crate::diagnose::observe::{layout::Kind, observations::Observations, strata::strata};
 use crate::diagnose::settings::{Response, Settings};
 
 /// Features with a common relative error.

@@ -4,10 +4,14 @@ use rayon::prelude::*;
 
 use crate::diagnose::inputs::Trying;
 use crate::diagnose::levels::workshop::BEYOND;
-use crate::diagnose::linearise::candidate::{Candidate, Node};
-use crate::diagnose::linearise::ground::Ground;
-use crate::diagnose::observe::bench::{Bench, Runs};
-use crate::diagnose::observe::observations::Observations;
+use crate::diagnose::linearise::{
+    candidate::{Candidate, Node},
+    ground::Ground,
+};
+use crate::diagnose::observe::{
+    bench::{Bench, Runs},
+    observations::Observations,
+};
 use crate::effects::{Action, Applied, Catalogue, Effect, Operator, Signals};
 use crate::problem::Problem;
 

@@ -2,8 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::diagnose::observe::cache::Cache;
-use crate::diagnose::observe::observations::Observations;
+use crate::diagnose::observe::{cache::Cache, observations::Observations};
 use crate::effects::Operator;
 use crate::problem::Problem;
 use crate::simulate::{Plan, Simulator, Task};

@@ -1,10 +1,11 @@
 //! Cache of computed features, so that an interrupted diagnosis can be resumed.
 
-use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex};
+use std::{
+    path::{Path, PathBuf},
+    sync::{Arc, Mutex},
+};
 
-use crate::data::hash::sha256;
-use crate::data::write::keep;
+use crate::data::{hash::sha256, write::keep};
 use crate::diagnose::levels::cache::{LARGEST, SEAL};
 use crate::disk;
 use crate::problem::Problem;

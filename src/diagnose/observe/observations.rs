@@ -4,17 +4,15 @@ use std::sync::OnceLock;
 
 use rayon::prelude::*;
 
-use crate::data::checks::whole;
-use crate::data::hash::sha256;
-use crate::data::{Campaign, RecordKind};
+use crate::data::{Campaign, RecordKind, checks::whole, hash::sha256};
 use crate::diagnose::levels::observations::ROUNDED;
-use crate::diagnose::observe::faults::faults;
-use crate::diagnose::observe::increments::{Increments, Limit};
-use crate::diagnose::observe::layout::{
-    ChannelFeatures, Feature, Kind, Layout, Spectrum, VERSION, of_channel,
+use crate::diagnose::observe::{
+    faults::faults,
+    increments::{Increments, Limit},
+    layout::{ChannelFeatures, Feature, Kind, Layout, Spectrum, VERSION, of_channel},
+    observed::{Observed, piece},
+    scatter::{Scatter, scatter},
 };
-use crate::diagnose::observe::observed::{Observed, piece};
-use crate::diagnose::observe::scatter::{Scatter, scatter};
 use crate::diagnose::settings::{GroupFeatures, Settings};
 use crate::effects::{Catalogue, Signals};
 use crate::problem::{Problem, Problems, Severity};

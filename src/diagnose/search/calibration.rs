@@ -6,11 +6,15 @@
 
 use rayon::prelude::*;
 
-use crate::diagnose::fit::fitter::{Fitted, Fitter};
-use crate::diagnose::fit::set::{Bars, plausible};
-use crate::diagnose::levels::calibration::{NAMED, NOTHING_HIDDEN, OUTSIDE, PAIRS, SINGLES, TRIES};
-use crate::diagnose::levels::common::NINETY;
-use crate::diagnose::levels::search::TOLERANCE_SD;
+use crate::diagnose::fit::{
+    fitter::{Fitted, Fitter},
+    set::{Bars, plausible},
+};
+use crate::diagnose::levels::{
+    calibration::{NAMED, NOTHING_HIDDEN, OUTSIDE, PAIRS, SINGLES, TRIES},
+    common::NINETY,
+    search::TOLERANCE_SD,
+};
 use crate::diagnose::linearise::whiten::plus;
 use crate::diagnose::search::{Far, Search};
 use crate::effects::Gauss;

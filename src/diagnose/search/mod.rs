@@ -3,14 +3,18 @@
 
 pub mod calibration;
 
-use std::collections::HashMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::{
+    collections::HashMap,
+    sync::{Arc, Mutex, PoisonError},
+};
 
 use rayon::prelude::*;
 
-use crate::diagnose::fit::fitter::{Fitted, Fitter, Member};
-use crate::diagnose::fit::joint::{Joint, fit};
-use crate::diagnose::fit::set::{Bars, Chosen, plausible};
+use crate::diagnose::fit::{
+    fitter::{Fitted, Fitter, Member},
+    joint::{Joint, fit},
+    set::{Bars, Chosen, plausible},
+};
 use crate::diagnose::levels::search::{
     BETTER, CONFINED, CONFINED_SHARE, FIRSTS, MOST, SECONDS, TOGETHER, TOLERANCE_SD, TRIED, WORTH,
 };

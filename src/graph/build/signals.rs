@@ -1,10 +1,12 @@
 //! The nodes of signals: from columns of the records to the samples of a section.
 
-use super::super::{NodeId, Operation};
-use super::Builder;
-use crate::check::evaluate::{shape, words};
-use crate::check::plan::{
-    AxisOperation, Expr, Kind, Mapping, Operator, Points, Scalar, Step, StepSpec, Type,
+use super::{
+    super::{NodeId, Operation},
+    Builder,
+};
+use crate::check::{
+    evaluate::{shape, words},
+    plan::{AxisOperation, Expr, Kind, Mapping, Operator, Points, Scalar, Step, StepSpec, Type},
 };
 use crate::source::Span;
 

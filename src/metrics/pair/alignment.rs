@@ -1,9 +1,14 @@
 //! Alignment of two records along the axis: shift, mirroring, drift.
 
-use super::lag::{Agreement, agreements};
-use super::{Metric, Undefined, check, undefined};
-use crate::metrics::resample::{interpolate, uniform_grid};
-use crate::metrics::statistics;
+use super::{
+    Metric, Undefined, check,
+    lag::{Agreement, agreements},
+    undefined,
+};
+use crate::metrics::{
+    resample::{interpolate, uniform_grid},
+    statistics,
+};
 
 /// Number of grid points of the search for a shift; a parabola refines the result between them.
 const GRID: f64 = 256.0;

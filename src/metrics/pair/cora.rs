@@ -4,8 +4,11 @@
 //! simulation responses", ESV 2009, and that of Altair HyperGraph. The program CORA was not to
 //! hand: no number here is checked against it.
 
-use super::lag::{Agreement, best_shift, overlap};
-use super::{Energies, Metric, Undefined, check, iso18571_corridor, undefined, weighted};
+use super::{
+    Energies, Metric, Undefined, check, iso18571_corridor,
+    lag::{Agreement, best_shift, overlap},
+    undefined, weighted,
+};
 use crate::metrics::sum::sum_of_pairs;
 
 /// The largest shift, as a share of the samples: the signals overlap by 80 % at least.

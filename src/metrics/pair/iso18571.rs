@@ -3,8 +3,11 @@
 //! As in the Python package `objective-rating-metrics` 1.3 (TU Graz), whose numbers the tests hold.
 //! The standard asks for signals at 10 kHz; here the samples are those of the records.
 
-use super::lag::{Agreement, best_shift, overlap};
-use super::{Metric, Undefined, check, undefined, weighted};
+use super::{
+    Metric, Undefined, check,
+    lag::{Agreement, best_shift, overlap},
+    undefined, weighted,
+};
 use crate::metrics::{
     statistics::peak_magnitude,
     sum::{sum, sum_of, sum_of_pairs},

@@ -3,8 +3,10 @@
 use realfft::num_complex::Complex;
 
 use super::{Undefined, undefined};
-use crate::metrics::fourier;
-use crate::metrics::sum::{RunningSums, sum_of};
+use crate::metrics::{
+    fourier,
+    sum::{RunningSums, sum_of},
+};
 
 /// A larger shift has to agree better by more than this. Differences below are rounding, and of
 /// equal ones the smaller shift counts.

@@ -1,12 +1,16 @@
 //! Positions of the objects of a PDF: cross-reference tables and streams (ISO 32000-1, clause 7.5),
 //! the newest first.
 
-use std::cell::{Cell, RefCell};
-use std::collections::BTreeMap;
+use std::{
+    cell::{Cell, RefCell},
+    collections::BTreeMap,
+};
 
-use super::Broken;
-use super::object::{Dict, Object, Parser};
-use super::stream::unpacked;
+use super::{
+    Broken,
+    object::{Dict, Object, Parser},
+    stream::unpacked,
+};
 
 /// Maximum number of objects read; the path to the attachments of a report has about fifty.
 const OBJECTS: usize = 200_000;

@@ -1,7 +1,6 @@
 //! Objects of a PDF (ISO 32000-1, clause 7.3).
 
-use std::cell::Cell;
-use std::collections::BTreeSet;
+use std::{cell::Cell, collections::BTreeSet};
 
 use super::Broken;
 

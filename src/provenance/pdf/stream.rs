@@ -4,8 +4,10 @@ use std::io::Read;
 
 use flate2::read::ZlibDecoder;
 
-use super::Broken;
-use super::object::{Dict, Object};
+use super::{
+    Broken,
+    object::{Dict, Object},
+};
 
 /// Unpacks a stream, and stops if it exceeds `most` bytes.
 ///

@@ -7,9 +7,11 @@
 
 use std::collections::BTreeMap;
 
-use super::Broken;
-use super::document::{Document, ObjectPosition};
-use super::object::{Dict, Object, Parser, is_space};
+use super::{
+    Broken,
+    document::{Document, ObjectPosition},
+    object::{Dict, Object, Parser, is_space},
+};
 
 /// What a signature changes in the catalogue; none of it is painted.
 const OF_CATALOGUE: [&str; 5] = ["AcroForm", "DSS", "Extensions", "Perms", "Version"];

@@ -5,11 +5,15 @@ mod agreement;
 mod sensitivity;
 mod verdicts;
 
-use crate::report::document::*;
-use crate::report::figure;
-use crate::report::view::{self, Opening};
-use crate::result::comparison::{Compared, Comparison, OnCampaign, Sensitivity};
-use crate::result::{CampaignInfo, FileHash, Identification, Kind, ProtocolInfo, VerdictWords};
+use crate::report::{
+    document::*,
+    figure,
+    view::{self, Opening},
+};
+use crate::result::{
+    CampaignInfo, FileHash, Identification, Kind, ProtocolInfo, VerdictWords,
+    comparison::{Compared, Comparison, OnCampaign, Sensitivity},
+};
 
 /// Title of every comparison.
 pub const TITLE: &str = "Protocols side by side";

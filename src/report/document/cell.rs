@@ -1,8 +1,10 @@
 //! Cells of tables: what they contain, and how it is printed.
 
-use super::finding::{Finding, Tone};
-use super::symbol::Symbol;
-use super::text::{Run, Text};
+use super::{
+    finding::{Finding, Tone},
+    symbol::Symbol,
+    text::{Run, Text},
+};
 use crate::report::number;
 use crate::result::{Reason, Scope, StatisticName};
 

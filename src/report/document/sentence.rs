@@ -1,7 +1,9 @@
 //! Sentences in which symbols of quantities and names of the protocol stand.
 
-use super::symbol::Symbol;
-use super::text::{Run, Text};
+use super::{
+    symbol::Symbol,
+    text::{Run, Text},
+};
 
 /// The symbols that a document knows, longest first.
 #[derive(Clone, Debug, Default)]

@@ -3,10 +3,12 @@
 use crate::result::Reason;
 use serde::{Serialize, Serializer};
 
-use super::Medium;
-use super::cell::{Cell, Content};
-use super::finding::{Finding, Tone};
-use super::text::{Run, Text};
+use super::{
+    Medium,
+    cell::{Cell, Content},
+    finding::{Finding, Tone},
+    text::{Run, Text},
+};
 use crate::report::number;
 
 /// A table.

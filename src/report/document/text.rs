@@ -2,8 +2,7 @@
 
 use serde::{Serialize, Serializer};
 
-use super::finding::Finding;
-use super::symbol::Symbol;
+use super::{finding::Finding, symbol::Symbol};
 
 /// What stands in a paragraph, a cell or a caption.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

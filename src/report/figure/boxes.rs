@@ -1,10 +1,11 @@
 //! Box plots of normalised statistics over all selections of sections, as in Götz and Polach,
 //! Figures 5, 6 and 8.
 
-use super::kit::*;
-use super::ratios::Ratios;
-use crate::result::StatisticName;
-use crate::result::study::{QuantitySpread, Spread, StatisticSpread};
+use super::{kit::*, ratios::Ratios};
+use crate::result::{
+    StatisticName,
+    study::{QuantitySpread, Spread, StatisticSpread},
+};
 
 /// Heights of the plotting area and of its labels, in points.
 const PANEL: f64 = 130.0;

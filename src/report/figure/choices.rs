@@ -2,8 +2,10 @@
 //! every parameter.
 
 use super::kit::*;
-use crate::result::study::{AtValue, Largest, ParameterStudy};
-use crate::result::{Verdict, VerdictWords};
+use crate::result::{
+    Verdict, VerdictWords,
+    study::{AtValue, Largest, ParameterStudy},
+};
 
 /// Heights of a row and of the line between parameters, in points.
 const ROW: f64 = 10.0;

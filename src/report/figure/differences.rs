@@ -2,10 +2,7 @@
 
 use indexmap::IndexMap;
 
-use super::kit::*;
-use super::levels::Levels;
-use super::pair_mark::Pairs;
-use super::zones::Marks;
+use super::{kit::*, levels::Levels, pair_mark::Pairs, zones::Marks};
 use crate::result::{QuantityResult, Scope};
 
 /// Maximum number of ticks of the y axis.

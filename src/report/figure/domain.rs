@@ -2,8 +2,7 @@
 
 use indexmap::IndexSet;
 
-use super::kit::*;
-use super::zones::Zones;
+use super::{kit::*, zones::Zones};
 use crate::result::{DomainRange, SectionResult};
 
 /// Height of one range, in points.

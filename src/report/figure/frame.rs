@@ -1,8 +1,10 @@
 //! The frame of a diagram: axes with ticks, grid and titles, and lines and backgrounds along them.
 
-use super::axis::{Range, Scale, Tick, number_room};
-use super::canvas::{Canvas, Font, Point};
-use super::style::{BEYOND, GRID, INK, LIMIT, MUTED, TEXT, TICK};
+use super::{
+    axis::{Range, Scale, Tick, number_room},
+    canvas::{Canvas, Font, Point},
+    style::{BEYOND, GRID, INK, LIMIT, MUTED, TEXT, TICK},
+};
 
 /// The plotting area of a diagram with its two scales; y increases upward.
 #[derive(Clone, Copy, Debug)]

@@ -3,10 +3,7 @@
 
 use indexmap::IndexMap;
 
-use super::kit::*;
-use super::pair_mark::Pairs;
-use super::style;
-use super::zones::Zones;
+use super::{kit::*, pair_mark::Pairs, style, zones::Zones};
 use crate::result::{PairValue, QuantityResult, StatisticName, StatisticResult};
 
 const HEIGHT: f64 = 140.0;

@@ -1,7 +1,9 @@
 //! A legend of marks, lines and backgrounds, wrapped to the width of the figure.
 
-use super::canvas::{Canvas, Font, Group, Point};
-use super::style::{Color, Mark, Pen, TEXT, cut, text_width};
+use super::{
+    canvas::{Canvas, Font, Group, Point},
+    style::{Color, Mark, Pen, TEXT, cut, text_width},
+};
 
 /// Height of a row, in points.
 const ROW: f64 = 11.5;

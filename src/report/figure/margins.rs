@@ -1,8 +1,10 @@
 //! The range of each change within which a verdict stays.
 
 use super::kit::*;
-use crate::result::VerdictWords;
-use crate::result::margin::{Changed, Margin, MarginStudy};
+use crate::result::{
+    VerdictWords,
+    margin::{Changed, Margin, MarginStudy},
+};
 
 /// Height of a row, and widths of the names on the left and of the numbers on the right, in points.
 const ROW: f64 = 12.0;

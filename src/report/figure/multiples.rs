@@ -3,9 +3,11 @@
 
 use indexmap::IndexSet;
 
-use super::kit::*;
-use super::pair_mark::Pairs;
-use super::zones::{Marks, Zones};
+use super::{
+    kit::*,
+    pair_mark::Pairs,
+    zones::{Marks, Zones},
+};
 use crate::report::brief::{Line, Matrix, Numbered};
 use crate::result::{QuantityResult, StatisticName};
 

@@ -1,10 +1,11 @@
 //! Study of offsets: normalised statistics of one selection (as Götz and Polach, Figure 7) and the
 //! share validated.
 
-use super::kit::*;
-use super::ratios::Ratios;
-use crate::result::study::{AtOffset, SyncStudy};
-use crate::result::{StatisticName, VerdictWords};
+use super::{kit::*, ratios::Ratios};
+use crate::result::{
+    StatisticName, VerdictWords,
+    study::{AtOffset, SyncStudy},
+};
 
 const PANEL: f64 = 118.0;
 const LABELS: f64 = 26.0;

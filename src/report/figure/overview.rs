@@ -2,8 +2,7 @@
 
 use indexmap::IndexSet;
 
-use super::kit::*;
-use super::symbol::symbol;
+use super::{kit::*, symbol::symbol};
 use crate::report::estimates;
 use crate::result::{QuantityResult, StatisticName, StatisticResult};
 

@@ -1,10 +1,12 @@
 //! The values of one quantity: simulated over measured, and the differences by section.
 
-use super::differences;
-use super::kit::*;
-use super::levels::Levels;
-use super::pair_mark::Pairs;
-use super::zones::{Marks, Zones};
+use super::{
+    differences,
+    kit::*,
+    levels::Levels,
+    pair_mark::Pairs,
+    zones::{Marks, Zones},
+};
 use crate::report::sides::Sides;
 use crate::result::{PairValue, QuantityResult};
 

@@ -1,7 +1,6 @@
 //! A diagram of statistics divided by their limits, with a labelled slot for each of them.
 
-use super::kit::*;
-use super::symbol::symbol;
+use super::{kit::*, symbol::symbol};
 
 /// Maximum number of ticks of the y axis.
 const TICKS: usize = 7;

@@ -1,8 +1,7 @@
 //! Regressions of the values of groups: one small diagram for each group, in a row on the same
 //! scale.
 
-use super::kit::*;
-use super::zones::Zones;
+use super::{kit::*, zones::Zones};
 use crate::report::estimates::OfLimit;
 use crate::result::{QuantityResult, RegressionFigure, StatisticResult};
 

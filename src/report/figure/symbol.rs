@@ -3,8 +3,10 @@
 //!
 //! A font would print a letter and its dots as two glyphs, which a PDF cannot map to one character.
 
-use super::canvas::{Canvas, Font, Held, Point};
-use super::style::{Mark, cut, text_width};
+use super::{
+    canvas::{Canvas, Font, Held, Point},
+    style::{Mark, cut, text_width},
+};
 
 /// Combining diaeresis: two dots over the preceding letter.
 const DIAERESIS: char = '\u{308}';

@@ -1,11 +1,11 @@
 //! Text of the study of the margin: how far the verdict is from another one.
 
 use super::share_with;
-use crate::report::document::*;
-use crate::report::number;
-use crate::report::view::Opening;
-use crate::result::VerdictWords;
-use crate::result::margin::{Changed, Drawn, Margin, MarginStudy, Probability, Risk, Wrong};
+use crate::report::{document::*, number, view::Opening};
+use crate::result::{
+    VerdictWords,
+    margin::{Changed, Drawn, Margin, MarginStudy, Probability, Risk, Wrong},
+};
 
 /// Digits of a change: it was searched to 0.1 %.
 const CHANGE: Format = Format::Change(3);

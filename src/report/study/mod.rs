@@ -8,13 +8,16 @@ mod sync;
 
 use std::fmt::Display;
 
-use crate::report::document::*;
-use crate::report::figure;
-use crate::report::number;
-use crate::report::view::{self, Opening};
-use crate::result::margin::Margin;
-use crate::result::study::{QuantitySpread, Share, Study, StudyResult};
-use crate::result::{ParameterInfo, Scope, Verdict, VerdictWords};
+use crate::report::{
+    document::*,
+    figure, number,
+    view::{self, Opening},
+};
+use crate::result::{
+    ParameterInfo, Scope, Verdict, VerdictWords,
+    margin::Margin,
+    study::{QuantitySpread, Share, Study, StudyResult},
+};
 
 /// What was varied.
 fn subject(study: &Study) -> &'static str {

@@ -1,12 +1,11 @@
 //! Text of the study of parameters.
 
 use super::{scoped, share_with};
-use crate::report::document::*;
-use crate::report::number;
-use crate::report::sides::capital;
-use crate::report::view::Opening;
-use crate::result::VerdictWords;
-use crate::result::study::{AtValue, ParameterStudy, Varied};
+use crate::report::{document::*, number, sides::capital, view::Opening};
+use crate::result::{
+    VerdictWords,
+    study::{AtValue, ParameterStudy, Varied},
+};
 
 pub fn opening(found: &ParameterStudy, words: &VerdictWords) -> Opening {
     let deciding: Vec<&str> = found

@@ -1,15 +1,11 @@
 //! Text of the study of selections.
 
 use super::{BOXES, percent, scoped, share};
-use crate::report::document::*;
-use crate::report::figure;
-use crate::report::number;
-use crate::report::sides::capital;
-use crate::report::view::Opening;
-use crate::result::study::{
-    Importance, QuantitySpread, Reduction, Removal, SelectionStudy, Spread,
+use crate::report::{document::*, figure, number, sides::capital, view::Opening};
+use crate::result::{
+    Reason, Verdict, VerdictWords,
+    study::{Importance, QuantitySpread, Reduction, Removal, SelectionStudy, Spread},
 };
-use crate::result::{Reason, Verdict, VerdictWords};
 
 /// Maximum number of rows of a table; the CSV tables contain all.
 const MOST_ROWS: usize = 60;

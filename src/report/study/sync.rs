@@ -1,12 +1,11 @@
 //! Text of the study of the synchronisation.
 
 use super::{BOXES, percent, scoped, sections, share};
-use crate::report::document::*;
-use crate::report::number;
-use crate::report::sides::capital;
-use crate::report::view::Opening;
-use crate::result::study::{AtOffset, SyncStudy};
-use crate::result::{Reason, UnusedSection, VerdictWords};
+use crate::report::{document::*, number, sides::capital, view::Opening};
+use crate::result::{
+    Reason, UnusedSection, VerdictWords,
+    study::{AtOffset, SyncStudy},
+};
 
 fn shown(found: &SyncStudy, offset: f64) -> String {
     number::with_unit(&number::significant(offset, 4), &found.axis_unit)

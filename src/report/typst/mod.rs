@@ -9,15 +9,16 @@ mod text;
 mod world;
 
 use serde_json::{Value, json};
-use typst::diag::SourceDiagnostic;
-use typst::foundations::Smart;
+use typst::{diag::SourceDiagnostic, foundations::Smart};
 use typst_layout::PagedDocument;
 use typst_pdf::{PdfOptions, PdfStandard, PdfStandards, Timestamp};
 
 use crate::hash::Hasher;
 use crate::problem::{Problem, Problems};
-use crate::report::document::{Document, Medium};
-use crate::report::pdf::{Attachment, Pdf};
+use crate::report::{
+    document::{Document, Medium},
+    pdf::{Attachment, Pdf},
+};
 use text::Printable;
 use world::Files;
 

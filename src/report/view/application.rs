@@ -1,7 +1,6 @@
 //! Wanted operation inside and outside what the sections cover.
 
-use crate::report::document::*;
-use crate::report::{figure, number};
+use crate::report::{document::*, figure, number};
 use crate::result::{CoordinateRange, DomainResult, WantedPoint};
 
 /// Digits of a distance, which is a share of ranges.

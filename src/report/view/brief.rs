@@ -1,9 +1,11 @@
 //! Many quantities: one line for each comparison, one column for each signal, and small diagrams.
 
 use super::View;
-use crate::report::brief::{self, Line, Matrix};
-use crate::report::document::*;
-use crate::report::{figure, number};
+use crate::report::{
+    brief::{self, Line, Matrix},
+    document::*,
+    figure, number,
+};
 use crate::result::QuantityResult;
 use crate::words;
 

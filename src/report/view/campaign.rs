@@ -2,8 +2,7 @@
 
 use indexmap::IndexSet;
 
-use crate::report::document::*;
-use crate::report::number;
+use crate::report::{document::*, number};
 use crate::result::{CampaignInfo, CampaignMember, DataItem};
 
 /// Items from which on a table of short ones stands in two halves, and letters of a short one.

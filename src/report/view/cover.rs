@@ -3,9 +3,11 @@
 use std::collections::BTreeSet;
 
 use super::{View, campaign, identity, statistic, verdicts, wording};
-use crate::report::document::*;
-use crate::report::number::{self, raised};
-use crate::report::rules;
+use crate::report::{
+    document::*,
+    number::{self, raised},
+    rules,
+};
 use crate::result::{
     CampaignInfo, Certification, Kind, ProtocolInfo, QuantityResult, Removed, Verdict,
 };

@@ -3,8 +3,7 @@
 use indexmap::IndexSet;
 
 use super::{View, application};
-use crate::report::document::*;
-use crate::report::number;
+use crate::report::{document::*, number};
 use crate::result::{Certification, DomainRange};
 
 /// Zones that have a column each in a table on paper.

@@ -2,10 +2,12 @@
 //! groups.
 
 use super::{View, caption, name, statistic};
-use crate::report::document::*;
-use crate::report::estimates::{self, OfLimit};
-use crate::report::number;
-use crate::report::sides::capital;
+use crate::report::{
+    document::*,
+    estimates::{self, OfLimit},
+    number,
+    sides::capital,
+};
 use crate::result::{QuantityResult, StatisticResult};
 
 /// The condensed limits of all quantities, each with the group that is nearest to it or farthest

@@ -3,9 +3,9 @@
 
 use super::View;
 use crate::report::document::*;
-use crate::result::confirmation::Signed;
-use crate::result::report::stated;
-use crate::result::{Certification, Departed, ReportItem, StatedValue};
+use crate::result::{
+    Certification, Departed, ReportItem, StatedValue, confirmation::Signed, report::stated,
+};
 
 /// Printed for an item that the campaign does not state.
 const NOT_STATED: &str = "not stated";

@@ -23,9 +23,11 @@ mod values;
 mod verdicts;
 mod wording;
 
-use crate::report::document::*;
-use crate::report::number;
-use crate::report::sides::{self, capital};
+use crate::report::{
+    document::*,
+    number,
+    sides::{self, capital},
+};
 use crate::result::{CampaignInfo, Certification, ProtocolInfo, QuantityResult, Trace};
 use provenance::{Kind, provenance};
 use wording::Wording;

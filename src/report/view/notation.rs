@@ -1,9 +1,7 @@
 //! Symbols, signs and terms used in tables and figures.
 
 use super::{View, verdicts};
-use crate::report::brief::in_full;
-use crate::report::document::*;
-use crate::report::number;
+use crate::report::{brief::in_full, document::*, number};
 use crate::result::{Certification, ChannelInfo, Outcome, QuantityResult};
 
 /// Comparisons with an explanation of their sign, of values called ONE and OTHER. Others are

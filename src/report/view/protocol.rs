@@ -1,7 +1,6 @@
 //! The protocol: identification, text, parameters, and deviations from its parent.
 
-use crate::report::document::*;
-use crate::report::number;
+use crate::report::{document::*, number};
 use crate::result::{Deviation, FilterInfo, ParameterInfo, ProtocolFile, ProtocolInfo};
 
 /// The complete protocol.

@@ -1,8 +1,6 @@
 //! Inputs that are required to repeat an evaluation, and how imported records were made.
 
-use crate::report::document::*;
-use crate::report::number;
-use crate::report::sides::capital;
+use crate::report::{document::*, number, sides::capital};
 use crate::result::{CampaignInfo, FileHash, ImportedOne, ImportedSide, ProtocolInfo};
 
 /// What a document is about.

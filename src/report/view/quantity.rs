@@ -1,10 +1,7 @@
 //! One quantity: its statistics and limits, its worst pairs, and all its values.
 
 use super::{View, brief, caption, groups, in_unit, reports, spread, statistic, values};
-use crate::report::brief::in_full;
-use crate::report::document::*;
-use crate::report::sides::Sides;
-use crate::report::{estimates, figure, number};
+use crate::report::{brief::in_full, document::*, estimates, figure, number, sides::Sides};
 use crate::result::{PairValue, QuantityResult, StatisticResult};
 
 /// Rows of a table that stays on one page with what a quantity is.

@@ -3,9 +3,7 @@
 use indexmap::{IndexMap, IndexSet};
 
 use super::name;
-use crate::report::document::*;
-use crate::report::number;
-use crate::report::sides::capital;
+use crate::report::{document::*, number, sides::capital};
 use crate::result::Reported;
 
 /// Number of estimates side by side that fit a page.

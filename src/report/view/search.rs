@@ -1,12 +1,16 @@
 //! How the sections were found in runs, and which were kept.
 
 use super::name;
-use crate::report::document::*;
-use crate::report::found::{drift_in_words, in_words};
-use crate::report::number;
-use crate::report::sides::capital;
-use crate::result::found::{FoundInRun, FoundSections, Rejected};
-use crate::result::study::Reduction;
+use crate::report::{
+    document::*,
+    found::{drift_in_words, in_words},
+    number,
+    sides::capital,
+};
+use crate::result::{
+    found::{FoundInRun, FoundSections, Rejected},
+    study::Reduction,
+};
 
 /// The search in the runs of a campaign.
 pub fn search(found: &FoundSections) -> Vec<Block> {

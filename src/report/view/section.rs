@@ -3,8 +3,7 @@
 use indexmap::IndexSet;
 
 use super::{View, name, reports, search};
-use crate::report::document::*;
-use crate::report::number;
+use crate::report::{document::*, number};
 use crate::result::{CheckResult, SectionResult, ZoneResult};
 
 /// Number of checks side by side that fit a page.

@@ -2,8 +2,7 @@
 //! rows for each class of sections.
 
 use super::{caption, in_unit, name};
-use crate::report::document::*;
-use crate::report::number;
+use crate::report::{document::*, number};
 use crate::result::{ClassSpread, Furthest, OfRecord, QuantityResult, Spread};
 
 /// Number of records side by side that fit a page.

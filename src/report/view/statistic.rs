@@ -1,7 +1,6 @@
 //! Cells of statistics and their limits, the same in all tables.
 
-use crate::report::document::*;
-use crate::report::number;
+use crate::report::{document::*, number};
 use crate::result::{QuantityResult, StatisticResult};
 
 /// The symbol of a quantity as the head of a row.

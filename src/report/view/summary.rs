@@ -2,8 +2,7 @@
 //! statistic.
 
 use super::{View, cover, groups, statistic, verdicts, wording};
-use crate::report::document::*;
-use crate::report::{estimates, findings, number};
+use crate::report::{document::*, estimates, findings, number};
 use crate::result::{Certification, QuantityResult, StatisticName, StatisticResult};
 
 /// What the word means behind a criterion.

@@ -5,9 +5,7 @@ use std::collections::{HashMap, HashSet};
 use indexmap::IndexMap;
 
 use super::{caption, in_unit, name};
-use crate::report::document::*;
-use crate::report::number;
-use crate::report::sides::Sides;
+use crate::report::{document::*, number, sides::Sides};
 use crate::result::{Direction, PairValue, QuantityResult, RecordName};
 
 /// Number of worst pairs listed.

@@ -1,8 +1,7 @@
 //! The verdicts with a name: a table, and a box for each that a person decides.
 
 use super::View;
-use crate::report::document::*;
-use crate::report::number;
+use crate::report::{document::*, number};
 use crate::result::{Certification, Outcome, Reason, ShortZone, Verdict, VerdictResult};
 
 /// All verdicts with a name; a short table has not all of their reasons.

@@ -3,10 +3,11 @@
 use super::search::{Grid, round_step};
 use crate::check::plan::Plan;
 use crate::graph::Graph;
-use crate::result::margin::{Changed, Margin};
-use crate::result::{Reason, Verdict};
-use crate::run::needs::needs;
-use crate::run::{Change, Evaluated, Holding, Line, Lines};
+use crate::result::{
+    Reason, Verdict,
+    margin::{Changed, Margin},
+};
+use crate::run::{Change, Evaluated, Holding, Line, Lines, needs::needs};
 use crate::units::Unit;
 
 /// Step and largest change of a gain in per cent, and of an offset in per cent of the largest

@@ -2,13 +2,17 @@
 
 use super::search::Grid;
 use crate::certify::Compiled;
-use crate::check::Overrides;
-use crate::check::plan::{Parameter, ParameterRange, Plan};
+use crate::check::{
+    Overrides,
+    plan::{Parameter, ParameterRange, Plan},
+};
 use crate::data::Campaigns;
 use crate::problem::Problems;
-use crate::result::margin::{Changed, Margin, Searched};
-use crate::result::study::Removal;
-use crate::result::{Reason, Verdict};
+use crate::result::{
+    Reason, Verdict,
+    margin::{Changed, Margin, Searched},
+    study::Removal,
+};
 use crate::robustness::{Settings, case_of, parameters, unshifted};
 use crate::run::{Evaluated, Judged, limit_changes};
 use crate::study;

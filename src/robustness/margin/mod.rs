@@ -10,9 +10,11 @@ use crate::certify::Compiled;
 use crate::check::Overrides;
 use crate::data::Campaigns;
 use crate::problem::Problems;
-use crate::result::Remark;
-use crate::result::margin::MarginStudy;
-use crate::result::study::{Study, StudyResult};
+use crate::result::{
+    Remark,
+    margin::MarginStudy,
+    study::{Study, StudyResult},
+};
 use crate::run::{Progress, hold};
 
 /// Number of draws, if no other is asked for: a share is then known to about 0.02.

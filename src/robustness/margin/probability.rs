@@ -5,15 +5,21 @@ use rayon::prelude::*;
 
 use super::channels::Channel;
 use crate::check::plan::Plan;
-use crate::data::Campaigns;
-use crate::data::campaign::{Size, Uncertainty};
-use crate::metrics::disturb::stream;
-use crate::metrics::interval::wilson;
-use crate::metrics::normal::normal_quantile;
-use crate::metrics::random::{GOLDEN, mixed};
+use crate::data::{
+    Campaigns,
+    campaign::{Size, Uncertainty},
+};
+use crate::metrics::{
+    disturb::stream,
+    interval::wilson,
+    normal::normal_quantile,
+    random::{GOLDEN, mixed},
+};
 use crate::problem::{Problem, Problems, error, problem};
-use crate::result::margin::{Changed, Drawn, Probability, Risk, Wrong};
-use crate::result::{StatisticResult, Verdict};
+use crate::result::{
+    StatisticResult, Verdict,
+    margin::{Changed, Drawn, Probability, Risk, Wrong},
+};
 use crate::run::{Change, Holding, Line, Lines};
 
 /// Guard band in standard uncertainties: a value that meets a limit by this much does so with a

@@ -1,7 +1,9 @@
 //! The nearest change that flips a verdict: looked for on a grid, one side at a time, then bisected.
 
-use crate::result::margin::{Margin, Searched};
-use crate::result::{Reason, Verdict};
+use crate::result::{
+    Reason, Verdict,
+    margin::{Margin, Searched},
+};
 use crate::units::number::significant;
 
 /// Width of the bracket at which a bisection ends, as a share of the change, or of a step of the

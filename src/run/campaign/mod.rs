@@ -4,18 +4,23 @@
 pub mod several;
 pub mod single;
 
-use crate::result::study::Reduction;
-use crate::result::{DataItem, DomainRange, DomainResult, SectionResult, Trace};
-use crate::run::data_rules::causes;
-use crate::run::describe::traces::{self, Kept, Signals};
-use crate::run::describe::{domain, not_asked, told};
-use crate::run::estimate::{extrapolation, used};
-use crate::run::prelude::*;
-use crate::run::reduce::held::{self, Holding};
-use crate::run::reduce::{Numbered, Prepared, Progress, Shard};
-use crate::run::sections::{Basis, units};
-use crate::run::values::{SectionValues, Shifts};
-use crate::run::verdict::{Evaluated, Judged, all_values};
+use crate::result::{DataItem, DomainRange, DomainResult, SectionResult, Trace, study::Reduction};
+use crate::run::{
+    data_rules::causes,
+    describe::{
+        domain, not_asked, told,
+        traces::{self, Kept, Signals},
+    },
+    estimate::{extrapolation, used},
+    prelude::*,
+    reduce::{
+        Numbered, Prepared, Progress, Shard,
+        held::{self, Holding},
+    },
+    sections::{Basis, units},
+    values::{SectionValues, Shifts},
+    verdict::{Evaluated, Judged, all_values},
+};
 
 /// The results of a run. The report adds the descriptions of protocol and campaign.
 #[derive(Debug)]

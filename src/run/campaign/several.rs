@@ -4,12 +4,14 @@
 use rayon::prelude::*;
 
 use crate::graph;
-use crate::run::campaign::Reduced;
-use crate::run::prelude::*;
-use crate::run::record::{Columns, Counts, Keys, Numbers, SectionRecords, Sharing, Trial, Work};
-use crate::run::reduce::{Prepared, Progress, section};
-use crate::run::values::{SectionValues, Shifts};
-use crate::run::verdict::Evaluated;
+use crate::run::{
+    campaign::Reduced,
+    prelude::*,
+    record::{Columns, Counts, Keys, Numbers, SectionRecords, Sharing, Trial, Work},
+    reduce::{Prepared, Progress, section},
+    values::{SectionValues, Shifts},
+    verdict::Evaluated,
+};
 
 /// A protocol to evaluate with others.
 #[derive(Clone, Copy, Debug)]

@@ -4,11 +4,16 @@
 use std::collections::BTreeSet;
 
 use crate::check::plan;
-use crate::run::prelude::*;
-use crate::run::record::{Fault, NodeValue, SectionWork, Work};
-use crate::run::reduce::section::{original, records};
-use crate::run::reduce::{Prepared, wanted_of};
-use crate::run::values::{Meetings, RecordOfSide, Row, SectionValues, Sides};
+use crate::run::{
+    prelude::*,
+    record::{Fault, NodeValue, SectionWork, Work},
+    reduce::{
+        Prepared,
+        section::{original, records},
+        wanted_of,
+    },
+    values::{Meetings, RecordOfSide, Row, SectionValues, Sides},
+};
 
 /// The value of one section and signal of a quantity.
 #[derive(Debug)]

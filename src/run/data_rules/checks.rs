@@ -2,11 +2,12 @@
 
 use super::plausibility::Questions;
 use crate::result::{CheckResult, Datum};
-use crate::run::prelude::*;
-use crate::run::record::{Fault, SectionWork, Work};
-use crate::run::sections::Known;
-use crate::run::sections::requirements::met;
-use crate::run::values::{NodeValues, SectionValues, Sides, Two};
+use crate::run::{
+    prelude::*,
+    record::{Fault, SectionWork, Work},
+    sections::{Known, requirements::met},
+    values::{NodeValues, SectionValues, Sides, Two},
+};
 use crate::units::Dimension;
 use crate::words::digits;
 

@@ -5,10 +5,14 @@ use std::collections::HashMap;
 use indexmap::IndexMap;
 
 use crate::result::Consequence;
-use crate::run::prelude::*;
-use crate::run::sections::Unit;
-use crate::run::sections::requirements::{Unchecked, of_check, unchecked};
-use crate::run::values::{SectionValues, margin_note};
+use crate::run::{
+    prelude::*,
+    sections::{
+        Unit,
+        requirements::{Unchecked, of_check, unchecked},
+    },
+    values::{SectionValues, margin_note},
+};
 
 /// The consequence of a finding, from the rule's `otherwise`. For `stop`, the run ends elsewhere.
 pub fn consequence(otherwise: OnFault) -> Consequence {

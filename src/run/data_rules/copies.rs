@@ -6,9 +6,7 @@ use rayon::slice::ParallelSliceMut;
 
 use super::consequence::consequence;
 use crate::result::Channels;
-use crate::run::prelude::*;
-use crate::run::sections::Unit;
-use crate::run::values::SectionValues;
+use crate::run::{prelude::*, sections::Unit, values::SectionValues};
 use crate::words;
 
 /// Two signals are copies if they share at least this part of the marks of the shorter one ...

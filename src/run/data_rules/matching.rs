@@ -6,9 +6,11 @@ use std::collections::HashMap;
 
 use super::consequence::consequence;
 use crate::metrics::statistics::median;
-use crate::run::prelude::*;
-use crate::run::sections::Unit;
-use crate::run::values::{SectionValues, Shape};
+use crate::run::{
+    prelude::*,
+    sections::Unit,
+    values::{SectionValues, Shape},
+};
 
 /// Least number of sections, or of channels, for what is usual.
 const FEWEST: usize = 5;

@@ -5,12 +5,16 @@ use indexmap::IndexMap;
 
 use super::consequence::consequence;
 use crate::check::evaluate::words;
-use crate::metrics::robust::{Estimate, level, slope};
-use crate::metrics::statistics::median;
+use crate::metrics::{
+    robust::{Estimate, level, slope},
+    statistics::median,
+};
 use crate::result::OfSections;
-use crate::run::prelude::*;
-use crate::run::sections::Unit;
-use crate::run::values::{Pooled, SectionValues};
+use crate::run::{
+    prelude::*,
+    sections::Unit,
+    values::{Pooled, SectionValues},
+};
 
 /// Least number of sections: of fewer, the scatter of a median is not known.
 const FEWEST: usize = 5;

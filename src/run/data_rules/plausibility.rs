@@ -2,15 +2,16 @@
 
 use std::collections::BTreeSet;
 
-use super::causes;
-use super::consequence::consequence;
+use super::{causes, consequence::consequence};
 use crate::check::evaluate::words;
 use crate::graph::PositionNodes;
 use crate::metrics::percentile::{Method, percentile};
-use crate::run::prelude::*;
-use crate::run::record::SectionWork;
-use crate::run::sections::{Known, needed};
-use crate::run::values::{NodeValues, Pooled, Print, SectionValues, Shape, Sides};
+use crate::run::{
+    prelude::*,
+    record::SectionWork,
+    sections::{Known, needed},
+    values::{NodeValues, Pooled, Print, SectionValues, Shape, Sides},
+};
 use crate::units::Dimension;
 
 /// A rule at a recorded position.

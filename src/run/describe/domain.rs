@@ -3,16 +3,22 @@
 
 use indexmap::IndexMap;
 
-use crate::metrics::hull::{self, Nearest};
-use crate::metrics::statistics::ends;
+use crate::metrics::{
+    hull::{self, Nearest},
+    statistics::ends,
+};
 use crate::result::{
     Beyond, Consequence, CoordinateRange, DomainRange, DomainResult, DomainSection, Scope,
     WantedPoint,
 };
-use crate::run::limit::rule_place;
-use crate::run::prelude::*;
-use crate::run::sections::wanted::{Point, value, word};
-use crate::run::sections::{Facts, Unit};
+use crate::run::{
+    limit::rule_place,
+    prelude::*,
+    sections::{
+        Facts, Unit,
+        wanted::{Point, value, word},
+    },
+};
 
 /// Code of the finding about wanted operation outside what the sections cover.
 const OUTSIDE: &str = "outside-domain";

@@ -4,8 +4,10 @@
 use indexmap::{IndexMap, IndexSet};
 
 use crate::result::Sections;
-use crate::run::prelude::*;
-use crate::run::sections::{Facts, Known, Unit};
+use crate::run::{
+    prelude::*,
+    sections::{Facts, Known, Unit},
+};
 
 /// Code of the finding about rules that were not asked. It does not change the verdict.
 const NOT_ASKED: &str = "plausibility-not-checked";

@@ -3,11 +3,13 @@
 use std::sync::Arc;
 
 use crate::result::{Count, Reported};
-use crate::run::estimate::{Group, Member, count_independent};
-use crate::run::limit::{Estimated, Judging, rule_place};
-use crate::run::prelude::*;
-use crate::run::sections::{Facts, Unit};
-use crate::run::values::Row;
+use crate::run::{
+    estimate::{Group, Member, count_independent},
+    limit::{Estimated, Judging, rule_place},
+    prelude::*,
+    sections::{Facts, Unit},
+    values::Row,
+};
 use crate::units;
 
 /// Stands for a section that is counted by itself.

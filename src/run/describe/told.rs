@@ -2,9 +2,11 @@
 //! data; what is not assessed.
 
 use crate::result::{DataItem, Datum, LimitFactor, QuantityResult, StatisticResult};
-use crate::run::estimate::{Used, absent};
-use crate::run::prelude::*;
-use crate::run::sections::{Facts, Vehicle, is_dimensioned, vehicle_item};
+use crate::run::{
+    estimate::{Used, absent},
+    prelude::*,
+    sections::{Facts, Vehicle, is_dimensioned, vehicle_item},
+};
 
 /// Code of the finding about units that the vehicle file does not state.
 const UNIT_ASSUMED: &str = "unit-assumed";

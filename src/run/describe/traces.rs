@@ -1,7 +1,9 @@
 //! Signals of the most important sections, reduced for plotting.
 
-use std::cell::RefCell;
-use std::collections::{BTreeMap, BTreeSet};
+use std::{
+    cell::RefCell,
+    collections::{BTreeMap, BTreeSet},
+};
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -9,11 +11,13 @@ use serde::{Deserialize, Serialize};
 use crate::check::plan;
 use crate::metrics::statistics::ends;
 use crate::result::{Curve, Direction, QuantityResult, Trace};
-use crate::run::data_rules::take_over;
-use crate::run::prelude::*;
-use crate::run::record::{NodeValue, Samples, SectionWork, Work};
-use crate::run::sections::{Extent, Unit as Section};
-use crate::run::values::{Row, SectionValues};
+use crate::run::{
+    data_rules::take_over,
+    prelude::*,
+    record::{NodeValue, Samples, SectionWork, Work},
+    sections::{Extent, Unit as Section},
+    values::{Row, SectionValues},
+};
 use crate::units::Unit;
 
 /// Number of stretches of a plotted curve. Each keeps its smallest and largest sample, so that no

@@ -5,13 +5,17 @@
 use std::collections::BTreeSet;
 
 use super::Candidate;
-use crate::data::campaign::Run;
-use crate::data::record::{Record, Wanted};
+use crate::data::{
+    campaign::Run,
+    record::{Record, Wanted},
+};
 use crate::metrics::drift::{Point, Signals, Tracker, Windows};
 use crate::result::found::{CoursePoint, Drift, DriftPoint};
-use crate::run::campaign::evaluate;
-use crate::run::prelude::*;
-use crate::run::values::{Offset, Shifts};
+use crate::run::{
+    campaign::evaluate,
+    prelude::*,
+    values::{Offset, Shifts},
+};
 
 /// Largest shift that is looked for, in lengths of the shortest section: 21 m for 70 m. Twice as
 /// much and more is read beside a section.

@@ -8,13 +8,10 @@ mod signals;
 mod table;
 mod window;
 
-use crate::data::campaign::Run;
-use crate::data::record::Wanted;
+use crate::data::{campaign::Run, record::Wanted};
 use crate::problem::error;
 use crate::result::found::{FoundInRun, FoundSections, Rejected, Stretch};
-use crate::run::prelude::*;
-use crate::run::reduce::Progress;
-use crate::run::sections::Facts;
+use crate::run::{prelude::*, reduce::Progress, sections::Facts};
 use place::{Chosen, Rules, Tried};
 use signals::{Signals, Source};
 use window::Window;

@@ -2,11 +2,15 @@
 //! several places that would overlap are taken.
 
 use super::signals::Signals;
-use crate::check::evaluate::evaluate;
-use crate::check::possible::{Possible, possible};
+use crate::check::{
+    evaluate::evaluate,
+    possible::{Possible, possible},
+};
 use crate::data::campaign::Run;
-use crate::run::prelude::*;
-use crate::run::sections::{Extent, Facts, Known, Vehicle, of_run};
+use crate::run::{
+    prelude::*,
+    sections::{Extent, Facts, Known, Vehicle, of_run},
+};
 
 /// How often a length that depends on data of the section is computed again from those of the new
 /// length.

@@ -1,14 +1,14 @@
 //! The signals of a piece of a run, filtered once, and values of any part of it.
 
-use std::collections::BTreeSet;
-use std::sync::Arc;
+use std::{collections::BTreeSet, sync::Arc};
 
 use super::Windows;
-use crate::metrics::percentile::Method;
-use crate::metrics::sampling::Traits;
-use crate::run::prelude::*;
-use crate::run::record::{NodeValue, Opened, Samples};
-use crate::run::sections::{Extent, Known, Vehicle, needed};
+use crate::metrics::{percentile::Method, sampling::Traits};
+use crate::run::{
+    prelude::*,
+    record::{NodeValue, Opened, Samples},
+    sections::{Extent, Known, Vehicle, needed},
+};
 
 /// A record of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,12 +2,16 @@
 //! run.
 
 use super::place::{Candidate, is_stated};
-use crate::data::campaign::{OFFSET, RUN_COLUMN, Run};
-use crate::data::table::Table;
-use crate::data::write::table_csv;
+use crate::data::{
+    campaign::{OFFSET, RUN_COLUMN, Run},
+    table::Table,
+    write::table_csv,
+};
 use crate::problem::nearest;
-use crate::run::prelude::*;
-use crate::run::sections::{computed_of_runs, of_run, trimmed};
+use crate::run::{
+    prelude::*,
+    sections::{computed_of_runs, of_run, trimmed},
+};
 
 /// What the table of found sections is called in messages: it is in no file.
 const NAME: &str = "found sections";

@@ -1,8 +1,10 @@
 //! The part of a record around the places that are looked at. Samples behind it are forgotten as
 //! the search goes on.
 
-use crate::data::blocks::Blocks;
-use crate::data::record::{Known, RecordSource, Wanted};
+use crate::data::{
+    blocks::Blocks,
+    record::{Known, RecordSource, Wanted},
+};
 use crate::problem::Problem;
 
 /// A stretch of a record; its first column is the axis.

@@ -1,9 +1,11 @@
 //! The limit of one group of rows: its bound with factors, and the limits that it refers to.
 
 use crate::result::Direction;
-use crate::run::estimate::{Closeness, Group, RowGroup};
-use crate::run::prelude::*;
-use crate::run::sections::{Known, Limits, Vehicle};
+use crate::run::{
+    estimate::{Closeness, Group, RowGroup},
+    prelude::*,
+    sections::{Known, Limits, Vehicle},
+};
 
 pub fn applies(limit: &Limit, vehicle: &Vehicle) -> Result<bool, Reason> {
     limit.only_when.as_ref().map_or(Ok(true), |condition| flag(condition, &Known::vehicle(vehicle)))

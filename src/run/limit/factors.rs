@@ -1,8 +1,10 @@
 //! Factors of limits that apply because of vehicle data, each with its reason.
 
 use crate::result::{Datum, LimitFactor};
-use crate::run::prelude::*;
-use crate::run::sections::{Known, Vehicle, vehicle_item};
+use crate::run::{
+    prelude::*,
+    sections::{Known, Vehicle, vehicle_item},
+};
 
 /// The factors of a limit that apply because of vehicle data alone, each with its reason.
 pub fn factors(plan: &Plan, vehicles: &[&Vehicle], limit: &Limit) -> Vec<LimitFactor> {

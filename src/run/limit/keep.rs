@@ -6,12 +6,16 @@ use indexmap::IndexMap;
 
 use super::pool::{Bounds, Pool, Pooled, PooledLimit, PooledQuantity, pool};
 use crate::catalog::Statistic;
-use crate::metrics::moments::{Moment, Moments, Summed};
-use crate::metrics::reduction::{over, reduced};
+use crate::metrics::{
+    moments::{Moment, Moments, Summed},
+    reduction::{over, reduced},
+};
 use crate::result::study::Reduction;
-use crate::run::prelude::*;
-use crate::run::sections::{Facts, Unit};
-use crate::run::values::SectionValues;
+use crate::run::{
+    prelude::*,
+    sections::{Facts, Unit},
+    values::SectionValues,
+};
 
 /// Leaves out sections, where the protocol says so.
 pub fn keep(

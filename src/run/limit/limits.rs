@@ -1,18 +1,22 @@
 //! Compares the estimates of a quantity with its limits.
 
-use super::against::{against, spans};
-use super::bound::{OfGroup, applies};
-use super::factors::factors;
+use super::{
+    against::{against, spans},
+    bound::{OfGroup, applies},
+    factors::factors,
+};
 use crate::catalog::Statistic;
 use crate::metrics::statistics::{Divisor, mean, standard_deviation};
 use crate::result::{
     Direction, EdgeResult, LimitNotMet, Outside, RegressionFigure, RulePlace, Sample, Scope,
     StatisticResult, VehicleValue,
 };
-use crate::run::estimate::{Group, Member, RowGroup, TooFew, count_independent};
-use crate::run::prelude::*;
-use crate::run::sections::{Facts, Known, Unit as Section, Vehicle};
-use crate::run::values::Row;
+use crate::run::{
+    estimate::{Group, Member, RowGroup, TooFew, count_independent},
+    prelude::*,
+    sections::{Facts, Known, Unit as Section, Vehicle},
+    values::Row,
+};
 use crate::source::Span;
 use crate::units::Unit;
 

@@ -1,18 +1,22 @@
 //! Everything a verdict depends on, for studies of the selection of sections: the values of every
 //! section and every limit with its bound, in the unit of the quantity.
 
-use std::collections::{BTreeSet, HashMap, HashSet};
-use std::sync::Arc;
+use std::{
+    collections::{BTreeSet, HashMap, HashSet},
+    sync::Arc,
+};
 
 use super::limits::{Judging, applying};
 use crate::catalog::Statistic;
 use crate::check::plan;
 use crate::metrics::moments::{Moment, Moments};
 use crate::result::{Direction, Scope};
-use crate::run::estimate::{Group, Member, RowGroup, Rows, used};
-use crate::run::prelude::*;
-use crate::run::sections::{Facts, Known, Unit, Vehicle};
-use crate::run::values::{Row, SectionValues};
+use crate::run::{
+    estimate::{Group, Member, RowGroup, Rows, used},
+    prelude::*,
+    sections::{Facts, Known, Unit, Vehicle},
+    values::{Row, SectionValues},
+};
 
 pub use crate::check::plan::Rule;
 

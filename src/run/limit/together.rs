@@ -1,12 +1,16 @@
 //! Several simulations under a protocol that does not tell them apart: a good one must not hide a
 //! bad one.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::sync::Arc;
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::Arc,
+};
 
 use super::limits::Judging;
-use crate::run::estimate::{Group, Member, Table};
-use crate::run::prelude::*;
+use crate::run::{
+    estimate::{Group, Member, Table},
+    prelude::*,
+};
 
 impl Judging<'_> {
     /// Why limits that all simulations together meet do not decide the quantity: the first simulation

@@ -7,14 +7,13 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use indexmap::IndexSet;
 
-use crate::data::campaign::POINT_KEY;
-use crate::data::sites;
+use crate::data::{campaign::POINT_KEY, sites};
 use crate::graph::QuantityNodes;
-use crate::run::prelude::*;
-use crate::run::reduce::wanted_of;
-use crate::run::sections::units::STATE;
-use crate::run::sections::wanted::columns as wanted_columns;
-use crate::run::sections::{NOT_STATED, trimmed};
+use crate::run::{
+    prelude::*,
+    reduce::wanted_of,
+    sections::{NOT_STATED, trimmed, units::STATE, wanted::columns as wanted_columns},
+};
 use crate::units::Unit;
 use reads::rules;
 

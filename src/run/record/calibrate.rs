@@ -2,16 +2,17 @@
 //! straight line is not computed again: a filter, a mean and a percentile of `a x + b` follow from
 //! those of `x`. All else runs through the graph again, from the changed channels.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::sync::{Arc, Mutex};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::{Arc, Mutex},
+};
 
-use super::memo::locked;
-use super::opened::Opened;
-use super::signal::Samples;
-use super::state::NodeValue;
+use super::{memo::locked, opened::Opened, signal::Samples, state::NodeValue};
 use crate::catalog::Reducer;
-use crate::run::prelude::*;
-use crate::run::sections::{Known, chosen, needed};
+use crate::run::{
+    prelude::*,
+    sections::{Known, chosen, needed},
+};
 
 /// A value `x` becomes `factor * x + offset`, in SI.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,16 +1,19 @@
 //! The nodes of a graph on one record: at once, or with the record kept after its filters ran, to
 //! be cut and reduced again for every shift.
 
-use std::collections::BTreeSet;
-use std::sync::Arc;
+use std::{collections::BTreeSet, sync::Arc};
 
-use super::memo::Keys;
-use super::opened::Opened;
-use super::signal::{Along, Cutter, Samples, Signal};
-use super::state::{NodeValue, State};
-use super::stretch::leading;
-use crate::run::prelude::*;
-use crate::run::sections::{Extent, Known};
+use super::{
+    memo::Keys,
+    opened::Opened,
+    signal::{Along, Cutter, Samples, Signal},
+    state::{NodeValue, State},
+    stretch::leading,
+};
+use crate::run::{
+    prelude::*,
+    sections::{Extent, Known},
+};
 
 /// A record whose filters have run, to be cut at several places.
 #[derive(Debug)]

@@ -1,17 +1,23 @@
 //! Results of nodes, kept under what the nodes do: what does the same with the same is computed
 //! once, in the graphs of several protocols or in sections that share a stretch of a run.
 
-use std::collections::HashMap;
-use std::hash::{Hash, Hasher};
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::{
+    collections::HashMap,
+    hash::{Hash, Hasher},
+    sync::{
+        Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicUsize, Ordering},
+    },
+};
 
 use super::signal::Signal;
 use crate::catalog::Reducer;
 use crate::graph::Node;
 use crate::metrics::percentile::Method;
-use crate::run::prelude::*;
-use crate::run::sections::{Known, chosen};
+use crate::run::{
+    prelude::*,
+    sections::{Known, chosen},
+};
 
 /// The number of what each node of a graph does, the same in every graph; `None` for nodes that
 /// join records, and where a name in the node has no value.

@@ -2,14 +2,21 @@
 
 use std::sync::{Arc, Mutex};
 
-use super::memo::{Memo, Numbers};
-use super::signal::{Along, Rate, Samples};
-use crate::data::campaign::{Changed, ReadFile};
-use crate::data::checks::{Section, check_axis, whole};
-use crate::data::{Record, qualified};
+use super::{
+    memo::{Memo, Numbers},
+    signal::{Along, Rate, Samples},
+};
+use crate::data::{
+    Record,
+    campaign::{Changed, ReadFile},
+    checks::{Section, check_axis, whole},
+    qualified,
+};
 use crate::result::{self, RecordOf};
-use crate::run::prelude::*;
-use crate::run::sections::{Extent, Unit};
+use crate::run::{
+    prelude::*,
+    sections::{Extent, Unit},
+};
 use crate::units::Dimension;
 
 /// Whether a file of a record cannot be read.

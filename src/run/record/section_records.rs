@@ -1,19 +1,29 @@
 //! The records of one section that several protocols evaluate: each record is read once, and what
 //! two protocols compute alike of it is computed once.
 
-use std::collections::BTreeMap;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex};
+use std::{
+    collections::BTreeMap,
+    sync::{
+        Arc, Mutex,
+        atomic::{AtomicUsize, Ordering},
+    },
+};
 
-use super::memo::{Keys, Memo, locked};
-use super::opened::{Fault, Opened, Reading};
-use super::trial::Trial;
-use crate::data::Record;
-use crate::data::campaign::{ReadFile, RunStretch};
-use crate::data::record::Wanted;
-use crate::data::table::Cell;
-use crate::run::prelude::*;
-use crate::run::sections::{Extent, Unit};
+use super::{
+    memo::{Keys, Memo, locked},
+    opened::{Fault, Opened, Reading},
+    trial::Trial,
+};
+use crate::data::{
+    Record,
+    campaign::{ReadFile, RunStretch},
+    record::Wanted,
+    table::Cell,
+};
+use crate::run::{
+    prelude::*,
+    sections::{Extent, Unit},
+};
 
 /// How much was read and filtered, and how much it would have been for each protocol by itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

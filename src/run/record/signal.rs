@@ -1,18 +1,19 @@
 //! Signals along a record, and the operations of the graph on them.
 
-use std::ops::Range;
-use std::sync::Arc;
+use std::{ops::Range, sync::Arc};
 
 use crate::catalog::InWindow;
 use crate::check::values::Values;
-use crate::metrics::filter::Filter;
-use crate::metrics::percentile::Method;
-use crate::metrics::rainflow::half_cycles;
-use crate::metrics::sampling::Traits;
-use crate::metrics::window::{Kind, Sliding};
-use crate::metrics::{along, resample};
-use crate::run::prelude::*;
-use crate::run::sections::Extent;
+use crate::metrics::{
+    along,
+    filter::Filter,
+    percentile::Method,
+    rainflow::half_cycles,
+    resample,
+    sampling::Traits,
+    window::{Kind, Sliding},
+};
+use crate::run::{prelude::*, sections::Extent};
 
 /// The axis of the samples, and their time, in SI; both increase strictly.
 #[derive(Debug)]

@@ -1,18 +1,20 @@
 //! Evaluation of the nodes of a graph on one record.
 
-use std::collections::BTreeSet;
-use std::sync::Arc;
+use std::{collections::BTreeSet, sync::Arc};
 
 use indexmap::IndexMap;
 
-use super::memo::{Computed, Keys, Memo};
-use super::opened::Opened;
-use super::signal::{Cutter, Samples, Signal, apply, arithmetic, choose, each, mapped};
+use super::{
+    memo::{Computed, Keys, Memo},
+    opened::Opened,
+    signal::{Cutter, Samples, Signal, apply, arithmetic, choose, each, mapped},
+};
 use crate::catalog::Reducer;
-use crate::metrics::percentile::percentiles;
-use crate::metrics::sampling::Traits;
-use crate::run::prelude::*;
-use crate::run::sections::{Extent, Known, chosen};
+use crate::metrics::{percentile::percentiles, sampling::Traits};
+use crate::run::{
+    prelude::*,
+    sections::{Extent, Known, chosen},
+};
 
 /// Value of a requested node.
 #[derive(Clone, Debug)]

@@ -1,18 +1,22 @@
 //! Records of stretches that neighbouring sections share: each is read once, and what no section
 //! changes is computed once.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::sync::{Arc, Mutex};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::{Arc, Mutex},
+};
 
-use super::memo::{Computed, Memo, locked};
-use super::opened::{Fault, Opened, Reading, Sampled, Stretched, clock};
-use super::signal::{Cutter, Signal};
-use super::state::State;
-use crate::data::Record;
-use crate::data::campaign::ReadFile;
-use crate::data::checks::check_axis;
-use crate::run::prelude::*;
-use crate::run::sections::{Extent, Known};
+use super::{
+    memo::{Computed, Memo, locked},
+    opened::{Fault, Opened, Reading, Sampled, Stretched, clock},
+    signal::{Cutter, Signal},
+    state::State,
+};
+use crate::data::{Record, campaign::ReadFile, checks::check_axis};
+use crate::run::{
+    prelude::*,
+    sections::{Extent, Known},
+};
 
 /// A record of the stretch with this number.
 type RecordOfStretch = (usize, WhichRecord);

@@ -1,16 +1,18 @@
 //! What every record is evaluated with, and the reading of a record for its nodes: alone, from a
 //! stretch that neighbours share, or from what several protocols share.
 
-use std::collections::BTreeSet;
-use std::sync::Arc;
+use std::{collections::BTreeSet, sync::Arc};
 
-use super::opened::{Fault, Opened, Reading, Stretched, clock, unreadable};
-use super::section_records::Sharing;
-use super::stretch::{Soundness, Stretches};
+use super::{
+    opened::{Fault, Opened, Reading, Stretched, clock, unreadable},
+    section_records::Sharing,
+    stretch::{Soundness, Stretches},
+};
 use crate::data::record::Wanted;
-use crate::run::prelude::*;
-use crate::run::sections::columns::Present;
-use crate::run::sections::{Facts, Known, Stretch, Unit, needed};
+use crate::run::{
+    prelude::*,
+    sections::{Facts, Known, Stretch, Unit, columns::Present, needed},
+};
 
 /// Data used for every record.
 #[derive(Clone, Copy, Debug)]

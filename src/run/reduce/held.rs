@@ -5,13 +5,17 @@ use std::collections::BTreeSet;
 
 use rayon::prelude::*;
 
-use super::Prepared;
-use super::section::{Active, active, of_quantities, records, rows};
-use crate::run::prelude::*;
-use crate::run::record::{Calibrated, Held, Lines, NodeValue, Opened, SectionWork, Work};
-use crate::run::sections::needed;
-use crate::run::values::{Meetings, Original, RecordOfSide, SectionValues, Sides};
-use crate::run::verdict::Evaluated;
+use super::{
+    Prepared,
+    section::{Active, active, of_quantities, records, rows},
+};
+use crate::run::{
+    prelude::*,
+    record::{Calibrated, Held, Lines, NodeValue, Opened, SectionWork, Work},
+    sections::needed,
+    values::{Meetings, Original, RecordOfSide, SectionValues, Sides},
+    verdict::Evaluated,
+};
 
 /// What is done to the measurement.
 #[derive(Clone, Copy, Debug)]

@@ -8,12 +8,17 @@ use rayon::prelude::*;
 use super::section;
 use crate::data::campaign::OFFSET;
 use crate::result::SectionOffset;
-use crate::run::data_rules::stop_on_fault;
-use crate::run::prelude::*;
-use crate::run::record::{Soundness, Stretches, Work};
-use crate::run::sections::columns::{self, Present, Recorded};
-use crate::run::sections::{Basis, Facts, Unit, requirements, share_stretches, units, wanted};
-use crate::run::values::{SectionValues, Shifts};
+use crate::run::{
+    data_rules::stop_on_fault,
+    prelude::*,
+    record::{Soundness, Stretches, Work},
+    sections::{
+        Basis, Facts, Unit,
+        columns::{self, Present, Recorded},
+        requirements, share_stretches, units, wanted,
+    },
+    values::{SectionValues, Shifts},
+};
 
 /// Called after each record, from any thread.
 pub type Progress<'a> = &'a (dyn Fn(&str) + Sync);

@@ -4,13 +4,14 @@
 use std::collections::BTreeSet;
 
 use crate::graph::SignalNodes;
-use crate::run::data_rules::{Questions, plausibility, record_checks, track_checks};
-use crate::run::prelude::*;
-use crate::run::record::{Fault, SectionWork, Work};
-use crate::run::sections::Unit;
-use crate::run::sections::columns::Present;
-use crate::run::values::{
-    Meetings, Original, RecordOfSide, Row, SectionValues, Shifts, Sides, synchronisation,
+use crate::run::{
+    data_rules::{Questions, plausibility, record_checks, track_checks},
+    prelude::*,
+    record::{Fault, SectionWork, Work},
+    sections::{Unit, columns::Present},
+    values::{
+        Meetings, Original, RecordOfSide, Row, SectionValues, Shifts, Sides, synchronisation,
+    },
 };
 
 /// The values of a section, once for each shift.

@@ -3,9 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::facts::Facts;
-use super::unit::Unit;
-use super::wanted::Point;
+use super::{facts::Facts, unit::Unit, wanted::Point};
 use crate::result::DataItem;
 use crate::run::prelude::*;
 

@@ -5,8 +5,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use indexmap::IndexMap;
 use rayon::prelude::*;
 
-use super::facts::{Facts, needed};
-use super::unit::Unit;
+use super::{
+    facts::{Facts, needed},
+    unit::Unit,
+};
 use crate::data::record::RecordSource;
 use crate::graph::{PositionNodes, QuantityNodes, SignalNodes};
 use crate::problem::nearest;

@@ -6,13 +6,14 @@ use std::collections::BTreeSet;
 use serde::{Deserialize, Serialize};
 
 use super::unit::Unit;
-use crate::check::evaluate::{evaluate, words};
-use crate::check::values::Values;
+use crate::check::{
+    evaluate::{evaluate, words},
+    values::Values,
+};
 use crate::data::campaign::VehicleState;
 use crate::result::DataItem;
 use crate::run::prelude::*;
-use crate::units::number::Refused;
-use crate::units::{self, Dimension};
+use crate::units::{self, Dimension, number::Refused};
 use crate::yaml::Value;
 
 /// Values of one vehicle, one for each [`Plan::vehicle`].

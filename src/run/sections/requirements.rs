@@ -2,10 +2,14 @@
 
 use indexmap::IndexMap;
 
-use super::facts::{Facts, Known, Vehicle, item};
-use super::unit::Unit;
-use crate::check::possible::{Possible, possible};
-use crate::check::values::{Values, Watched};
+use super::{
+    facts::{Facts, Known, Vehicle, item},
+    unit::Unit,
+};
+use crate::check::{
+    possible::{Possible, possible},
+    values::{Values, Watched},
+};
 use crate::result::{CheckResult, DataItem, Datum, SELECTION, Sections};
 use crate::run::prelude::*;
 

@@ -6,8 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::data::campaign::RunStretch;
-use crate::data::table::Cell;
+use crate::data::{campaign::RunStretch, table::Cell};
 use crate::result::CheckResult;
 use crate::run::prelude::*;
 use crate::source::Span;

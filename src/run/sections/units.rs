@@ -2,12 +2,16 @@
 
 use std::collections::HashMap;
 
-use super::facts::{Facts, item, scalar, told};
-use super::unit::Unit;
-use crate::data::campaign::Run;
-use crate::data::qualified;
-use crate::data::sites::{originals, site_text, sites};
-use crate::data::table::{Cell, Table};
+use super::{
+    facts::{Facts, item, scalar, told},
+    unit::Unit,
+};
+use crate::data::{
+    campaign::Run,
+    qualified,
+    sites::{originals, site_text, sites},
+    table::{Cell, Table},
+};
 use crate::result::SectionResult;
 use crate::run::prelude::*;
 use crate::units::Unit as OfMeasure;

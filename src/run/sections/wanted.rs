@@ -2,8 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::facts::{Facts, Known, Vehicle, compute};
-use super::units::{Row, column_missing};
+use super::{
+    facts::{Facts, Known, Vehicle, compute},
+    units::{Row, column_missing},
+};
 use crate::data::table::{Cell, Table};
 use crate::run::prelude::*;
 

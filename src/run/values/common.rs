@@ -1,19 +1,25 @@
 //! Both sides of a section at common points, and values of expressions over their samples.
 
-use std::borrow::Cow;
-use std::cell::{OnceCell, RefCell};
-use std::ops::Range;
-use std::rc::Rc;
-use std::sync::Arc;
+use std::{
+    borrow::Cow,
+    cell::{OnceCell, RefCell},
+    ops::Range,
+    rc::Rc,
+    sync::Arc,
+};
 
 use crate::catalog::Reducer;
 use crate::check::evaluate::words;
-use crate::metrics::percentile::Method;
-use crate::metrics::resample::{self, Located};
-use crate::metrics::sampling::Traits;
-use crate::run::prelude::*;
-use crate::run::record::{Along, Samples, Signal, apply, arithmetic, choose, each, mapped};
-use crate::run::sections::{Extent, Known};
+use crate::metrics::{
+    percentile::Method,
+    resample::{self, Located},
+    sampling::Traits,
+};
+use crate::run::{
+    prelude::*,
+    record::{Along, Samples, Signal, apply, arithmetic, choose, each, mapped},
+    sections::{Extent, Known},
+};
 
 /// Where the samples of two records meet. It is the same for all signals of the two.
 #[derive(Debug)]

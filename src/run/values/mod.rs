@@ -19,8 +19,7 @@ pub mod synchronisation;
 use serde::{Deserialize, Serialize};
 
 use crate::result::CheckResult;
-use crate::run::prelude::*;
-use crate::run::sections::Extent;
+use crate::run::{prelude::*, sections::Extent};
 
 pub use common::Meetings;
 pub use one_record::{NodeValues, RecordOfSide, margin_note};

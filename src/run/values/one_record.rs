@@ -1,14 +1,15 @@
 //! One record of a section through the graph, and whether it extends far enough beyond the section
 //! for slow filters to settle.
 
-use std::collections::BTreeSet;
-use std::sync::Arc;
+use std::{collections::BTreeSet, sync::Arc};
 
 use super::SectionValues;
 use crate::metrics::filter::{Band, Roots};
-use crate::run::prelude::*;
-use crate::run::record::{Fault, NodeValue, Opened, Samples, SectionWork, Work};
-use crate::run::sections::Extent;
+use crate::run::{
+    prelude::*,
+    record::{Fault, NodeValue, Opened, Samples, SectionWork, Work},
+    sections::Extent,
+};
 
 /// Values of the requested nodes of one record, in the order in which they were computed.
 #[derive(Clone, Debug, Default)]

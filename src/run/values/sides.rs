@@ -1,17 +1,20 @@
 //! The evaluated records of one section, and the values, differences and metrics computed from
 //! them.
 
-use std::borrow::Cow;
-use std::sync::Arc;
+use std::{borrow::Cow, sync::Arc};
 
-use super::common::{Both, Meetings};
-use super::{NodeValues, RecordOfSide, Row};
+use super::{
+    NodeValues, RecordOfSide, Row,
+    common::{Both, Meetings},
+};
 use crate::catalog::{Metric, Pair};
 use crate::graph::{Joint, SignalNodes, ValueNodes};
 use crate::metrics::{pair, statistics};
-use crate::run::prelude::*;
-use crate::run::record::{NodeValue, Rate, Samples, SectionWork};
-use crate::run::sections::{Extent, Known};
+use crate::run::{
+    prelude::*,
+    record::{NodeValue, Rate, Samples, SectionWork},
+    sections::{Extent, Known},
+};
 
 /// What is computed of two records, and of how many samples.
 type OfTwo<'a> = dyn Fn(&Two<'_>) -> Result<(f64, usize), Reason> + 'a;

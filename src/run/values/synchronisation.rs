@@ -4,9 +4,11 @@ use std::collections::BTreeSet;
 
 use super::{NodeValues, Offset};
 use crate::metrics::synchronise::{self, Estimate, Search};
-use crate::run::prelude::*;
-use crate::run::record::{Held, NodeValue};
-use crate::run::sections::Unit;
+use crate::run::{
+    prelude::*,
+    record::{Held, NodeValue},
+    sections::Unit,
+};
 
 /// Number of steps of the search up to its largest shift.
 const STEPS: f64 = 100.0;

@@ -1,11 +1,11 @@
 //! Cache of records of external simulators, keyed by their inputs.
 
-use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex};
+use std::{
+    path::{Path, PathBuf},
+    sync::{Arc, Mutex},
+};
 
-use crate::data::hash::sha256;
-use crate::data::text::LARGEST_RECORD;
-use crate::data::write::keep;
+use crate::data::{hash::sha256, text::LARGEST_RECORD, write::keep};
 use crate::disk;
 use crate::problem::Problem;
 

@@ -2,9 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::cache::Key;
-use super::read::Program;
-use super::words::Word;
+use super::{cache::Key, read::Program, words::Word};
 use crate::data::Campaign;
 use crate::disk;
 use crate::problem::Problem;

@@ -2,12 +2,17 @@
 
 use serde_json::{Map, Value, json};
 
-use super::super::made::{first, lacks, unit_in, wanted};
-use super::cache::Key;
-use super::python::{Columns, Workers};
-use super::{External, covers};
-use crate::data::record::{Wanted, listed_headings, read_headings, read_record};
-use crate::data::{Heading, RecordKind};
+use super::{
+    super::made::{first, lacks, unit_in, wanted},
+    External,
+    cache::Key,
+    covers,
+    python::{Columns, Workers},
+};
+use crate::data::{
+    Heading, RecordKind,
+    record::{Wanted, listed_headings, read_headings, read_record},
+};
 use crate::effects::{Action, Catalogue, Channel, Signals};
 use crate::problem::{Problem, error};
 use crate::simulate::{Section, Task};

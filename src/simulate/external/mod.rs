@@ -9,20 +9,26 @@ mod read;
 mod started;
 mod words;
 
-use std::path::{Path, PathBuf};
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::{
+    path::{Path, PathBuf},
+    sync::{
+        Mutex,
+        atomic::{AtomicUsize, Ordering},
+    },
+};
 
 pub use cache::Cache;
 pub use read::{Program, read_program};
 
-use super::campaign::{Units, recorded};
-use super::compare::{Deviation, deviations};
-use super::made::{first, read_made, unit_in};
-use super::{Section, Simulator, Task};
-use crate::data::record::RecordSource;
-use crate::data::text::LARGEST_RECORD;
-use crate::data::{Campaign, CampaignPath, Heading, RecordKind};
+use super::{
+    Section, Simulator, Task,
+    campaign::{Units, recorded},
+    compare::{Deviation, deviations},
+    made::{first, read_made, unit_in},
+};
+use crate::data::{
+    Campaign, CampaignPath, Heading, RecordKind, record::RecordSource, text::LARGEST_RECORD,
+};
 use crate::disk;
 use crate::effects::Signals;
 use crate::problem::{Problem, error};

@@ -1,19 +1,25 @@
 //! A Python function as a simulator: processes that stay, one for each worker, and JSON lines over
 //! their pipes.
 
-use std::collections::BTreeSet;
-use std::io::{BufRead, BufReader, Read, Write};
-use std::path::PathBuf;
-use std::process::{Child, ChildStdin, Stdio};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
-use std::sync::{Mutex, OnceLock};
-use std::time::Duration;
+use std::{
+    collections::BTreeSet,
+    io::{BufRead, BufReader, Read, Write},
+    path::PathBuf,
+    process::{Child, ChildStdin, Stdio},
+    sync::{
+        Mutex, OnceLock,
+        mpsc::{Receiver, RecvTimeoutError, sync_channel},
+    },
+    time::Duration,
+};
 
 use serde_json::{Map, Value, json};
 
-use super::process::{Fault, Printed, end, ended, last_lines, launched};
-use super::read::{Program, Python};
-use super::started::Mark;
+use super::{
+    process::{Fault, Printed, end, ended, last_lines, launched},
+    read::{Program, Python},
+    started::Mark,
+};
 use crate::data::text::LARGEST_RECORD;
 use crate::disk;
 

@@ -1,9 +1,11 @@
 //! Reads `sim.yaml`, which describes how an external simulator is called.
 
-use std::ops::RangeInclusive;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::time::Duration;
+use std::{
+    ops::RangeInclusive,
+    path::{Path, PathBuf},
+    sync::Arc,
+    time::Duration,
+};
 
 use super::words::{Hole, Word};
 use crate::disk;

@@ -1,15 +1,11 @@
 //! The field `for each`: variables and their members.
 
-use std::ops::Range;
-use std::sync::Arc;
+use std::{ops::Range, sync::Arc};
 
 use super::{Places, place_called};
 use crate::problem::{Problems, error, nearest, problem};
 use crate::source::Spanned;
-use crate::syntax::document::Text;
-use crate::syntax::keys::EACH;
-use crate::syntax::layout::Quotes;
-use crate::syntax::phrase::normalised;
+use crate::syntax::{document::Text, keys::EACH, layout::Quotes, phrase::normalised};
 
 /// The word of a member for one variable, with its place.
 pub type Word = Arc<Spanned<String>>;

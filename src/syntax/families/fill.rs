@@ -1,7 +1,6 @@
 //! Texts of a family with `{variable}`, and their form for each member.
 
-use std::ops::Range;
-use std::sync::Arc;
+use std::{ops::Range, sync::Arc};
 
 use super::each::Word;
 use crate::problem::{Problem, Problems, error, nearest, problem};

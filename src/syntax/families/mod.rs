@@ -6,16 +6,17 @@
 mod each;
 mod fill;
 
-use std::collections::BTreeMap;
-use std::sync::Arc;
+use std::{collections::BTreeMap, sync::Arc};
 
 use indexmap::IndexMap;
 
-use super::document::{Block, Comments, Document, Field, Text};
-use super::from_pest;
-use super::keys::{self, EACH, Kind, Sort};
-use super::layout::Quotes;
-use super::lines;
+use super::{
+    document::{Block, Comments, Document, Field, Text},
+    from_pest,
+    keys::{self, EACH, Kind, Sort},
+    layout::Quotes,
+    lines,
+};
 use crate::problem::{Problem, Problems, error, nearest, problem};
 use crate::source::{Filled, Member, Span, Spanned};
 use each::{Group, Word};

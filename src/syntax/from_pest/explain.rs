@@ -6,8 +6,7 @@ use pest::error::{Error, ErrorVariant, InputLocation};
 
 use super::{Rule, is_keyword};
 use crate::problem::{Problem, error, problem};
-use crate::syntax::document::Text;
-use crate::syntax::{idiom, phrase::normalised};
+use crate::syntax::{document::Text, idiom, phrase::normalised};
 use crate::units::Unit;
 
 pub(super) fn twice(what: &str, text: &Text, range: Range<usize>) -> Problem {

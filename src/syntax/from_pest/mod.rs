@@ -7,17 +7,16 @@ mod tree;
 mod units;
 mod verdicts;
 
-use std::ops::Range;
-use std::sync::Arc;
-use std::vec::IntoIter;
+use std::{ops::Range, sync::Arc, vec::IntoIter};
 
-use pest::Parser;
-use pest::iterators::Pair;
+use pest::{Parser, iterators::Pair};
 
-use super::document::Text;
-use super::phrase::{
-    Alias, At, Domain, Limit, Minimum, Node, Number, OfPlaces, Phrase, Pick, Report, Scope, Step,
-    normalised,
+use super::{
+    document::Text,
+    phrase::{
+        Alias, At, Domain, Limit, Minimum, Node, Number, OfPlaces, Phrase, Pick, Report, Scope,
+        Step, normalised,
+    },
 };
 use crate::problem::Problems;
 use tree::{cases, either, estimate, pick, step, sum};

@@ -1,11 +1,13 @@
 //! Rules of verdicts, and outcomes in order.
 
-use super::tree::{either, sum, value};
-use super::{Parsed, Rule, parsed};
+use super::{
+    Parsed, Rule, parsed,
+    tree::{either, sum, value},
+};
 use crate::problem::Problems;
-use crate::syntax::document::Text;
-use crate::syntax::phrase::{
-    Needed, Node, Number, Outcome, OverVerdicts, Phrase, Verdict, normalised,
+use crate::syntax::{
+    document::Text,
+    phrase::{Needed, Node, Number, Outcome, OverVerdicts, Phrase, Verdict, normalised},
 };
 
 pub fn verdict(text: &Text, problems: &mut Problems) -> Option<Verdict> {

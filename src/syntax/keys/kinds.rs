@@ -1,10 +1,12 @@
 //! The table of blocks and fields.
 
-use super::fields::{
-    CLAUSE, FOR_EACH, NOTE, OPTIONAL, PARAPHRASE, SOURCE, UNCONFIRMED, WORDS, list, many, pattern,
-    phrase, text,
+use super::{
+    Key, Kind,
+    fields::{
+        CLAUSE, FOR_EACH, NOTE, OPTIONAL, PARAPHRASE, SOURCE, UNCONFIRMED, WORDS, list, many,
+        pattern, phrase, text,
+    },
 };
-use super::{Key, Kind};
 
 /// A kind of block with a name, of which a protocol has any number.
 const VERDICT_OUTCOME: Key = many(phrase(

@@ -1,22 +1,26 @@
 //! The numbers of a row group, batch by batch.
 
-use std::ops::Range;
-use std::sync::Arc;
+use std::{ops::Range, sync::Arc};
 
-use arrow_array::cast::AsArray;
-use arrow_array::types::{
-    ArrowPrimitiveType, Float16Type, Float32Type, Float64Type, Int8Type, Int16Type, Int32Type,
-    Int64Type, UInt8Type, UInt16Type, UInt32Type, UInt64Type,
+use arrow_array::{
+    Array, RecordBatch,
+    cast::AsArray,
+    types::{
+        ArrowPrimitiveType, Float16Type, Float32Type, Float64Type, Int8Type, Int16Type, Int32Type,
+        Int64Type, UInt8Type, UInt16Type, UInt32Type, UInt64Type,
+    },
 };
-use arrow_array::{Array, RecordBatch};
 use arrow_schema::DataType;
-use parquet::DecodeResult;
-use parquet::arrow::ProjectionMask;
-use parquet::arrow::arrow_reader::RowSelection;
-use parquet::arrow::push_decoder::{ParquetPushDecoderBuilder, PushBuffers};
+use parquet::{
+    DecodeResult,
+    arrow::{
+        ProjectionMask,
+        arrow_reader::RowSelection,
+        push_decoder::{ParquetPushDecoderBuilder, PushBuffers},
+    },
+};
 
-use super::open::Opened;
-use super::{Column, Heading, guard, value_at};
+use super::{Column, Heading, guard, open::Opened, value_at};
 use crate::data::{
     faults::Faults,
     record::decoded::Numbers,

@@ -23,11 +23,11 @@ use open::{Opened, Store};
 pub use runs::{stream, stretch};
 
 use super::{Column, Known, Run, Wanted, find_columns, guard};
-use crate::data::prelude::*;
 use crate::data::{
     cells::Heading,
     faults::Faults,
     hash::sha256,
+    prelude::*,
     text::{LARGEST_RECORD, read_file},
     write::{FileColumn, Values},
 };

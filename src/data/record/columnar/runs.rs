@@ -1,24 +1,25 @@
 //! Long records: one block after the other, or a stretch of them.
 
-use std::io;
-use std::ops::Range;
-use std::sync::Arc;
+use std::{io, ops::Range, sync::Arc};
 
 use parquet::file::statistics::Statistics;
 
-use super::open::{At, Opened, Store, footer};
-use super::{Column, no_rows};
-use crate::data::prelude::*;
+use super::{
+    Column, no_rows,
+    open::{At, Opened, Store, footer},
+};
 use crate::data::{
     cells::names,
     faults::Faults,
     hash::{Hasher, sha256},
-    record::Wanted,
-    record::decoded,
-    record::held::Held,
-    record::known::{Known, KnownFile},
-    record::stored::Stored,
-    record::stretch::{Block, Run, Stretch, axis_of, values},
+    prelude::*,
+    record::{
+        Wanted, decoded,
+        held::Held,
+        known::{Known, KnownFile},
+        stored::Stored,
+        stretch::{Block, Run, Stretch, axis_of, values},
+    },
     text::unreadable,
 };
 
