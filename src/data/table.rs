@@ -24,6 +24,45 @@ pub struct Table {
     named: HashMap<String, usize>,
 }
 
+/// Names of devices of Windows, which no file can have there, whatever its ending
+/// (<https://learn.microsoft.com/windows/win32/fileio/naming-a-file>).
+const DEVICES: [&str; 6] = ["con", "prn", "aux", "nul", "com", "lpt"];
+
+/// Warns of names that cannot be those of files on every system.
+fn not_portable(names: &[&Cell], problems: &mut Problems) {
+    let mut known: HashMap<String, &Cell> = HashMap::with_capacity(names.len());
+    for name in names {
+        let lower = name.value.to_lowercase();
+        let stem = lower.split('.').next().unwrap_or_default();
+        let device = |device: &str| match stem.strip_prefix(device) {
+            Some(rest) if ["com", "lpt"].contains(&device) => {
+                matches!(rest.as_bytes(), [b'1'..=b'9'])
+            }
+            rest => rest == Some(""),
+        };
+        let says = if DEVICES.into_iter().any(device) {
+            Some(format!("`{}` is the name of a device on Windows", name.value))
+        } else if name.value.ends_with(['.', ' ']) {
+            Some(format!("`{}` ends in a point, which Windows drops from names", name.value))
+        } else {
+            None
+        };
+        if let Some(says) = says {
+            let problem = warning("name-not-portable", says, &name.span);
+            problems.push(problem.help("its records cannot be copied there: choose another name"));
+        }
+        match known.get(&lower) {
+            Some(before) if before.value != name.value => {
+                let says = format!("`{}` and `{}` differ by case alone", before.value, name.value);
+                let problem = warning("name-not-portable", says, &name.span);
+                let help = "on Windows and macOS they are the same file: choose another name";
+                problems.push(problem.also(&before.span, "the other one").help(help));
+            }
+            _ => drop(known.insert(lower, name)),
+        }
+    }
+}
+
 /// The text of a cell without quotes and surrounding blanks, and its place.
 pub type Cell = Spanned<String>;
 
@@ -109,6 +148,7 @@ impl Table {
             }
             named.entry(name.value.clone()).or_insert(row);
         }
+        not_portable(&names, problems);
         self.named = named;
         let good = faults.is_empty();
         faults.add_to(problems);

@@ -116,7 +116,7 @@ pub fn is_link(path: &Path) -> io::Result<bool> {
 /// # Errors
 /// As [`kind`].
 pub fn real(path: &Path) -> io::Result<Option<PathBuf>> {
-    looked(path, fs::canonicalize)
+    looked(path, dunce::canonicalize)
 }
 
 /// The user who owns a file or folder.

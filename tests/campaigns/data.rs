@@ -415,3 +415,24 @@ fn units_of_the_file_are_kept() {
         .expect("a record");
     assert_eq!(record.columns[2].unit, Unit::parse("kN").expect("known"));
 }
+
+/// Names that are devices on Windows, end in a point, or differ by case alone.
+#[test]
+fn names_that_no_other_system_has_are_told() {
+    let told = |names: &[&str]| {
+        let text = format!("section\n{}\n", names.join("\n"));
+        let mut problems = Problems::default();
+        let source = fishplate::source::Source::new("sections.csv", text.as_str());
+        let table = Table::parse(source, String::new(), Some("section"), &mut problems);
+        assert!(table.is_some(), "{}", problems.render(false));
+        problems.0.iter().map(|one| one.says.clone()).collect::<Vec<_>>()
+    };
+    assert_eq!(
+        told(&["S01", "console", "com", "com12", "auxiliary", "lpt0"]),
+        Vec::<String>::new()
+    );
+    assert_eq!(told(&["aux"]), ["`aux` is the name of a device on Windows"]);
+    assert_eq!(told(&["COM7.a"]), ["`COM7.a` is the name of a device on Windows"]);
+    assert_eq!(told(&["S1."]), ["`S1.` ends in a point, which Windows drops from names"]);
+    assert_eq!(told(&["Straße", "s1", "S1"]), ["`s1` and `S1` differ by case alone"]);
+}

@@ -40,6 +40,16 @@ fn code(path: &Path) -> String {
     code.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n")
 }
 
+/// The sources by their path from the root, with their text.
+pub fn texts() -> Vec<(String, String)> {
+    let of = |(_, path): (String, PathBuf)| {
+        let inside = path.strip_prefix(root()).expect("below the root");
+        let name = inside.to_string_lossy().replace('\\', "/");
+        (name, fs::read_to_string(&path).expect("a source"))
+    };
+    sources().into_iter().map(of).collect()
+}
+
 /// Modules named after a path such as `crate::`, in single and grouped imports.
 fn imports(code: &str, after: &str) -> BTreeSet<String> {
     code.split(after)

@@ -1,5 +1,6 @@
 //! The parts of the documentation that are made from the program's own tables.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use clap::CommandFactory;
@@ -34,6 +35,7 @@ pub fn part(name: &str) -> String {
         ("protocols", "") => protocols(),
         ("commands", "") => commands(),
         ("results.json", "") => results(),
+        ("platforms", "") => platforms(),
         ("effects", acts) => effects(acts),
         _ => panic!("nothing is generated as `{name}`"),
     }
@@ -50,11 +52,39 @@ pub fn wanted() -> Vec<String> {
         }
     }
     all.extend(
-        ["blocks", "units", "percentile rules", "protocols", "commands", "results.json"]
-            .map(str::to_string),
+        [
+            "blocks",
+            "units",
+            "percentile rules",
+            "platforms",
+            "protocols",
+            "commands",
+            "results.json",
+        ]
+        .map(str::to_string),
     );
     all.extend(Acts::WORDS.iter().map(|(word, _)| format!("effects {word}")));
     all
+}
+
+/// Where the sources have code for single systems.
+fn platforms() -> String {
+    let mut found: BTreeMap<(String, String), usize> = BTreeMap::new();
+    for (path, text) in crate::layering::texts() {
+        let conditions = text.lines().filter_map(|line| {
+            let condition = line.trim().strip_prefix("#[cfg(")?.strip_suffix(")]")?;
+            let system = ["unix", "windows", "target_os", "target_family"];
+            system.iter().any(|word| condition.contains(word)).then_some(condition)
+        });
+        for condition in conditions {
+            *found.entry((path.clone(), condition.to_owned())).or_default() += 1;
+        }
+    }
+    let row = |((path, condition), count): (&(String, String), &usize)| {
+        format!("| `{path}` | `{condition}` | {count} |\n")
+    };
+    let rows: String = found.iter().map(row).collect();
+    format!("| file | compiled for | places |\n|---|---|---|\n{rows}")
 }
 
 /// A block is called by its word; the second kind of a word by what it is in YAML.
