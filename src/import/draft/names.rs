@@ -300,10 +300,11 @@ impl Names {
             .collect();
         for words in &mut all {
             // The number behind such a word is that of the channel in the file.
-            let behind = |at: usize| at > 0 && common.contains(&words[at - 1]);
-            let keeps =
-                |at: usize| !common.contains(&words[at]) && !(is_number(&words[at]) && behind(at));
-            *words = (0..words.len()).filter(|at| keeps(*at)).map(|at| words[at].clone()).collect();
+            let is_common = |at: usize| common.contains(&words[at]);
+            let drops =
+                |at: usize| is_common(at) || at > 0 && is_common(at - 1) && is_number(&words[at]);
+            let kept = (0..words.len()).filter(|at| !drops(*at)).map(|at| words[at].clone());
+            *words = kept.collect();
         }
         let readings: Vec<Vec<Reading>> = all.iter().map(|words| vocabulary.read(words)).collect();
         let mut names = Self { readings, orders: Vec::new(), decided: None };

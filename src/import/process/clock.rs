@@ -4,7 +4,6 @@ use std::ops::Range;
 
 use super::recording::{Recording, nearest_or_first, two_units};
 use super::short;
-use super::starts::{Zero, starts};
 use crate::data::checks::{self, Steps};
 use crate::foreign::{Channel, Table};
 use crate::metrics::{resample, sinc};
@@ -19,6 +18,17 @@ pub const SAME_RATE: f64 = 1e-3;
 /// Largest deviation of a time from even steps, as a share of a step, for a filter to apply. Times
 /// rounded to milliseconds at 200 Hz deviate by a tenth.
 const EVEN: f64 = 0.2;
+
+/// What the times of a table count from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Zero {
+    /// A time in ns, of the calendar or of the day.
+    Stamp(i64),
+    /// That of the channels of time of other tables.
+    Numbers,
+    /// The first sample, whose time nothing states.
+    Start,
+}
 
 /// The times of a table in s, increasing, and its rate.
 #[derive(Clone, Debug)]
@@ -358,6 +368,17 @@ pub fn on_grid(
     sinc::interpolate(values, &points, grid.rate / clock.rate)
         .map(|values| (values, How::Filtered))
         .ok_or_else(|| "is too short to be resampled".into())
+}
+
+/// When a table starts, as the mapping states it.
+pub fn starts(recording: &Recording<'_>, table: &Table) -> Result<Option<f64>, Problem> {
+    let starts = &recording.side.time.starts.0;
+    let known = || recording.tables.iter().map(|table| table.name.as_str());
+    if let Some((key, _)) = starts.iter().find(|(key, _)| !known().any(|name| name == key.text)) {
+        let says = format!("`{}` has no table `{}`", recording.shown, key.text);
+        return Err(error("unknown-table", says, &key.span).suggest(&key.text, known()));
+    }
+    Ok(starts.iter().find(|(key, _)| key.text == table.name).map(|(_, start)| start.si()))
 }
 
 #[cfg(test)]

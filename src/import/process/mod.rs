@@ -5,17 +5,17 @@
 //! |---|---|
 //! | `recording` | channels in the file, and their units |
 //! | `clock` | time of a table, the grid of a record, resampling |
-//! | `starts` | when the tables of a file start |
+//! | `clocks` | the clocks of the tables of a file as one |
 //! | `distance` | distance from a channel, a speed or a trigger; match with the track file |
 //! | `times` | gaps and uneven steps of time; the account of rates |
 //! | `finish` | the record cut to its section, and its last checks |
 //! | `store` | values of columns, in memory or in a file |
 
 mod clock;
+mod clocks;
 mod distance;
 mod finish;
 mod recording;
-mod starts;
 mod store;
 mod times;
 
@@ -296,7 +296,7 @@ fn clocks(
             wanted[recording.find(&term.name, map.table.as_ref())?.0] = true;
         }
     }
-    starts::clocks(recording, &wanted)
+    clocks::clocks(recording, &wanted)
 }
 
 /// The time that all used tables cover.

@@ -116,14 +116,12 @@ fn names_of_fifteen_exports_are_read() {
         for export in all.iter().filter(|one| one.kept_out == kept_out) {
             let beside = (export.name == "digits-turned").then_some(simulation);
             let found = counts(export, beside);
-            println!("{} {found:?}", export.name);
             sum.right += found.right;
             sum.marked += found.marked;
             sum.missed.extend(found.missed);
             sum.wrong.extend(found.wrong);
         }
         let total = sum.right + sum.marked + sum.missed.len() + sum.wrong.len();
-        println!("kept out {kept_out}: {} right, {} marked of {total}", sum.right, sum.marked);
         assert!(sum.wrong.is_empty(), "{:?}", sum.wrong);
         assert!(10 * (sum.right + sum.marked) >= 9 * total, "{sum:?}");
         assert!(10 * sum.marked <= sum.right + sum.marked, "{sum:?}");

@@ -1,21 +1,9 @@
-//! When the tables of a file start, and their clocks as one.
+//! The clocks of the tables of a file as one.
 
-use super::clock::{Clock, clock};
+use super::clock::{Clock, Zero, clock};
 use super::recording::Recording;
-use crate::foreign::{NANOSECONDS, Table};
+use crate::foreign::NANOSECONDS;
 use crate::problem::{Problem, error};
-use crate::yaml::Quantity;
-
-/// What the times of a table count from.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Zero {
-    /// A time in ns, of the calendar or of the day.
-    Stamp(i64),
-    /// That of the channels of time of other tables.
-    Numbers,
-    /// The first sample, whose time nothing states.
-    Start,
-}
 
 /// The clocks of the tables that are used, as one: their times count from the same zero.
 ///
@@ -77,14 +65,3 @@ fn start_missing(recording: &Recording<'_>, clocks: &[Option<Clock>]) -> Problem
 
 /// Tables that are named in a problem.
 const MOST_TOLD: usize = 6;
-
-/// When a table starts, as the mapping states it.
-pub fn starts(recording: &Recording<'_>, table: &Table) -> Result<Option<f64>, Problem> {
-    let starts = &recording.side.time.starts.0;
-    let known = || recording.tables.iter().map(|table| table.name.as_str());
-    if let Some((key, _)) = starts.iter().find(|(key, _)| !known().any(|name| name == key.text)) {
-        let says = format!("`{}` has no table `{}`", recording.shown, key.text);
-        return Err(error("unknown-table", says, &key.span).suggest(&key.text, known()));
-    }
-    Ok(starts.iter().find(|(key, _)| key.text == table.name).map(|(_, start)| start.si()))
-}
