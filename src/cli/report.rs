@@ -151,7 +151,7 @@ fn summary(found: &Certification, console: &Console) -> Lines {
     // Of a rule that does not hold, a reason tells it.
     for drawn in found.drawn.iter().filter(|drawn| drawn.holds() == Some(true)) {
         let of = drawn.verdict.as_ref().map_or(String::new(), |name| format!("{name}: "));
-        out += &format!("  {of}{}\n", drawn.text());
+        out += &format!("  {of}{}\n", Reason::InDraws(drawn.clone()).text());
     }
     for verdict in found.verdicts.iter().filter(|verdict| !verdict.overall) {
         let word = console.paint(verdict.word.clone(), verdict.outcome.holds());

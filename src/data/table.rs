@@ -28,10 +28,10 @@ pub struct Table {
 /// (<https://learn.microsoft.com/windows/win32/fileio/naming-a-file>).
 const DEVICES: [&str; 6] = ["con", "prn", "aux", "nul", "com", "lpt"];
 
-/// Warns of names that cannot be those of files on every system.
-fn not_portable(names: &[&Cell], problems: &mut Problems) {
-    let mut known: HashMap<String, &Cell> = HashMap::with_capacity(names.len());
-    for name in names {
+/// Warns of names of rows that cannot be those of files on every system.
+pub fn not_portable(table: &Table, problems: &mut Problems) {
+    let mut known: HashMap<String, &Cell> = HashMap::new();
+    for name in table.names() {
         let lower = name.value.to_lowercase();
         let stem = lower.split('.').next().unwrap_or_default();
         let device = |device: &str| match stem.strip_prefix(device) {
@@ -42,7 +42,7 @@ fn not_portable(names: &[&Cell], problems: &mut Problems) {
         };
         let says = if DEVICES.into_iter().any(device) {
             Some(format!("`{}` is the name of a device on Windows", name.value))
-        } else if name.value.ends_with(['.', ' ']) {
+        } else if name.value.ends_with('.') {
             Some(format!("`{}` ends in a point, which Windows drops from names", name.value))
         } else {
             None
@@ -148,7 +148,6 @@ impl Table {
             }
             named.entry(name.value.clone()).or_insert(row);
         }
-        not_portable(&names, problems);
         self.named = named;
         let good = faults.is_empty();
         faults.add_to(problems);

@@ -311,9 +311,10 @@ fn values(
         return Ok(times.and_then(|times| all.then_some(times).ok_or("its cells are text".into())));
     }
     let as_number = |text: &str| text::number(text, options);
-    let wrong = cells.iter().enumerate().find_map(|(at, cell)| Some((at, (*cell)?.text()?)));
-    let wrong = wrong
-        .filter(|_| there().any(|cell| cell.text().is_some_and(|text| as_number(text).is_none())));
+    let wrong = cells.iter().enumerate().find_map(|(at, cell)| {
+        let text = (*cell)?.text()?;
+        as_number(text).is_none().then_some((at, text))
+    });
     if let Some((at, text)) = wrong {
         return Err((at, text.chars().take(40).collect()));
     }

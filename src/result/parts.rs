@@ -4,8 +4,6 @@ use indexmap::IndexSet;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::words::{self, Text};
-
 /// A value that holds of one of several vehicles.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct OfVehicle {
@@ -150,7 +148,6 @@ pub struct RecordsOf {
 
 /// A rule of a verdict over limits, judged in draws of the sections.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(tag = "code", rename = "drawn")]
 pub struct InDraws {
     /// Of which verdict; `None` of the one without a name.
     pub verdict: Option<String>,
@@ -182,10 +179,6 @@ impl InDraws {
         } else {
             None
         }
-    }
-
-    pub fn text(&self) -> Text {
-        words::text(self)
     }
 }
 

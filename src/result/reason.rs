@@ -381,14 +381,8 @@ pub enum Reason {
         met: usize,
         minimum: usize,
     },
-    TooFewDraws {
-        drawn: Box<InDraws>,
-    },
-    /// Too few draws in which the rule can be judged.
-    DrawsUndefined {
-        drawn: Box<InDraws>,
-        reason: Box<Self>,
-    },
+    /// In how many draws of the sections a rule holds.
+    InDraws(InDraws),
     /// A unit that no other can be drawn for, with sections in these zones.
     TooFewToDraw {
         zones: Vec<String>,

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use fishplate::data::campaign::{Campaign, RecordKind};
 use fishplate::data::checks::{Section, check_axis};
 use fishplate::data::record::{Wanted, read_record};
-use fishplate::data::table::Table;
+use fishplate::data::table::{Table, not_portable};
 use fishplate::data::text::read_text;
 use fishplate::data::write::{Entry, OutColumn, Outputs, campaign_yaml, record_csv, table_csv};
 use fishplate::problem::{Problem, Problems};
@@ -424,7 +424,8 @@ fn names_that_no_other_system_has_are_told() {
         let mut problems = Problems::default();
         let source = fishplate::source::Source::new("sections.csv", text.as_str());
         let table = Table::parse(source, String::new(), Some("section"), &mut problems);
-        assert!(table.is_some(), "{}", problems.render(false));
+        let table = table.unwrap_or_else(|| panic!("{}", problems.render(false)));
+        not_portable(&table, &mut problems);
         problems.0.iter().map(|one| one.says.clone()).collect::<Vec<_>>()
     };
     assert_eq!(

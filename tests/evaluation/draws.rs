@@ -102,7 +102,7 @@ fn nothing_is_drawn_without_enough_units() {
     assert_eq!((found.verdict, found.drawn.len()), (Verdict::NotAssessable, 0));
     let found = found_in(campaign.path(), &[], &["sections_per_zone=1"]);
     assert_eq!(found.verdict, Verdict::NotAssessable);
-    let expected = "zone 2 has 1 independent unit of this kind; a draw needs at least 2";
+    let expected = "only 1 independent unit has its sections in zone 2; a draw needs at least 2";
     assert_eq!(found.reasons[0].text().to_string(), expected);
 }
 

@@ -8,7 +8,12 @@ use super::{
     runs::{Run, runs},
     uncertainty::{Uncertainty, uncertainties},
 };
-use crate::data::{identification::at_the_margin, origin::Origin, prelude::*, table::Table};
+use crate::data::{
+    identification::at_the_margin,
+    origin::Origin,
+    prelude::*,
+    table::{Table, not_portable},
+};
 
 /// The column of the section table that names the sections; without it, the first column does.
 const SECTION_KEY: &str = "section";
@@ -78,7 +83,9 @@ fn vehicle(reader: &mut Reader<'_, '_>, key: &Key, node: &Node) -> Option<Node> 
 
 /// The table of sections.
 fn sections(reader: &mut Reader<'_, '_>, key: &Key, node: &Node) -> Option<Table> {
-    reader.table(key, node, Some(SECTION_KEY))
+    let table = reader.table(key, node, Some(SECTION_KEY))?;
+    not_portable(&table, reader.problems);
+    Some(table)
 }
 
 /// The table of wanted operation. No other column has names: of two equal speeds in the first one,

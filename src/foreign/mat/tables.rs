@@ -161,14 +161,25 @@ fn fields_as_channels(nested: Fields) -> (Fields, Vec<Channel>) {
     }
 }
 
-/// Beginnings of the fields with what the numbers are multiplied by, and with what is added then.
-const SCALES: &[&str] = &["scal", "skal", "factor", "faktor", "gain", "slope"];
-const OFFSETS: &[&str] = &["offset", "intercept"];
+/// Fields with what the numbers are multiplied by, and with what is added then.
+const SCALES: &[&str] = &[
+    "scale",
+    "scales",
+    "scaling",
+    "scalefactor",
+    "scale_factor",
+    "skalierung",
+    "factor",
+    "faktor",
+    "gain",
+    "slope",
+];
+const OFFSETS: &[&str] = &["offset", "offsets", "intercept"];
 
 /// A channel with the scale and the offset of its number among so many, where fields state them.
 fn scaled(mut channel: Channel, fields: &Fields, index: usize, count: usize) -> Channel {
     let number = |words: &[&str]| {
-        let of = |name: &str| words.iter().any(|word| name.to_lowercase().starts_with(word));
+        let of = |name: &str| words.contains(&name.to_lowercase().as_str());
         fields.iter().filter(|(name, _)| of(name)).find_map(|(_, value)| match value {
             Value::Numbers { values, .. } if values.len() == count => values.get(index).copied(),
             _ => None,

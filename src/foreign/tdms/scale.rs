@@ -52,7 +52,12 @@ pub fn apply(properties: &IndexMap<String, Property>, values: &mut [f64]) -> Res
             }
             "Polynomial" => {
                 let size = number(name("Polynomial_Coefficients_Size")).unwrap_or(4.0) as usize;
-                let coefficients: Option<Vec<f64>> = (0..size.min(MOST))
+                if size > MOST {
+                    return Err(format!(
+                        "its polynomial has {size} coefficients; at most {MOST} are read"
+                    ));
+                }
+                let coefficients: Option<Vec<f64>> = (0..size)
                     .map(|at| number(name(&format!("Polynomial_Coefficients[{at}]"))))
                     .collect();
                 let coefficients = coefficients.ok_or("its polynomial lacks a coefficient")?;

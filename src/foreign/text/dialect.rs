@@ -252,10 +252,16 @@ fn is_numbers(line: Line<'_>, separator: Separator, options: &Options) -> bool {
     is_row(line, options) && (all('.') || all(','))
 }
 
+/// The first line behind so many lines of the file: one that states the separator is not among
+/// these, and one may go over several.
+pub fn behind(lines: &[Line<'_>], count: usize) -> usize {
+    lines.iter().position(|line| line.number > count).unwrap_or(lines.len())
+}
+
 /// The first line of numbers.
 fn first_of_numbers(lines: &[Line<'_>], separator: Separator, options: &Options) -> usize {
     let first = lines.iter().position(|line| is_numbers(*line, separator, options));
-    options.header_lines.or(first).unwrap_or(lines.len()).min(lines.len())
+    options.header_lines.map(|count| behind(lines, count)).or(first).unwrap_or(lines.len())
 }
 
 /// The lines with each row as one line: so many lines of the file are a row.
@@ -265,7 +271,11 @@ pub fn joined(lines: &[Line<'_>], options: &Options, each: usize) -> Vec<(usize,
     let (before, rows) = lines.split_at(first_of_numbers(lines, separator, options));
     let rows: Vec<&Line<'_>> = rows.iter().filter(|line| is_row(**line, options)).collect();
     let row = |parts: &[&Line<'_>]| {
-        let text = parts.iter().map(|line| line.text.trim_end().trim_end_matches(mark));
+        let part = |line: &Line<'_>| {
+            let text = line.text.trim_end();
+            text.strip_suffix(mark).unwrap_or(text).to_owned()
+        };
+        let text = parts.iter().map(|line| part(line));
         (parts[0].number, text.collect::<Vec<_>>().join(&mark.to_string()))
     };
     let before = before.iter().map(|line| (line.number, line.text.to_string()));
@@ -319,7 +329,7 @@ const SAMPLE_BYTES: usize = 1 << 20;
 pub fn detect(lines: &[Line<'_>], options: &Options) -> Option<Dialect> {
     let from = options.header_lines.map_or_else(
         || (lines.len() / 2).min(lines.len().saturating_sub(SAMPLE)),
-        |count| count.min(lines.len()),
+        |count| behind(lines, count),
     );
     let mut bytes = 0;
     let sample: Vec<&str> = lines[from..]

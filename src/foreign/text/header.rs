@@ -311,7 +311,10 @@ fn stacked(
     if text.dialect.separator != Separator::Blanks {
         return None;
     }
-    let ends: Vec<usize> = text.cells(first.text).iter().map(|cell| cell.end).collect();
+    // Columns are counted in letters: names have letters of several bytes.
+    let letters = |line: &str, at: usize| line[..at].chars().count();
+    let cells = text.cells(first.text);
+    let ends: Vec<usize> = cells.iter().map(|cell| letters(first.text, cell.end)).collect();
     let mut names: Vec<Vec<&str>> = vec![Vec::new(); ends.len()];
     let (mut lines, mut next) = (0, units.number);
     for line in before.iter().rev().skip_while(|line| line.number >= units.number) {
@@ -320,9 +323,10 @@ fn stacked(
         }
         let mut taken: Vec<usize> = Vec::new();
         for part in apart(line.text) {
-            let at = ends.iter().position(|end| part.end <= *end)?;
+            let [start, end] = [part.start, part.end].map(|at| letters(line.text, at));
+            let at = ends.iter().position(|of| end <= *of)?;
             let from = at.checked_sub(1).map_or(0, |before| ends[before]);
-            if part.start < from || taken.contains(&at) {
+            if start < from || taken.contains(&at) {
                 return None;
             }
             taken.push(at);

@@ -135,7 +135,8 @@ impl Text<'_> {
     fn first_row(&self, lines: &[Line<'_>]) -> Option<usize> {
         let Self { options, dialect, .. } = self;
         if let Some(count) = options.header_lines {
-            let at = lines.get(count..)?.iter().position(|line| is_row(*line, options))?;
+            let count = dialect::behind(lines, count);
+            let at = lines[count..].iter().position(|line| is_row(*line, options))?;
             return Some(count + at);
         }
         let after = options.names_line.max(options.units_line).unwrap_or(0);

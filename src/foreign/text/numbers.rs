@@ -119,6 +119,10 @@ impl Marks {
             return;
         }
         let word = word.trim_start_matches(['-', '+']);
+        // A missing value says nothing of marks.
+        if !word.starts_with(|first: char| first.is_ascii_digit()) {
+            return;
+        }
         let digits = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit());
         match word.split_once(decimal) {
             None if word.len() <= 3 && digits(word) => self.small = true,
@@ -144,6 +148,20 @@ impl Marks {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A missing value says nothing of the mark; a number of four digits does.
+    #[test]
+    fn marks_are_unclear_until_a_number_tells() {
+        let unclear = |words: &[&str]| {
+            let mut marks = Marks::default();
+            words.iter().enumerate().for_each(|(row, word)| marks.see(row, word, '.'));
+            marks.unclear()
+        };
+        assert_eq!(unclear(&["990", "1.004"]), Some(1));
+        assert_eq!(unclear(&["990", "NaN", "n/a", "1.004"]), Some(3));
+        assert_eq!(unclear(&["990", "1.004", "0.5"]), None);
+        assert_eq!(unclear(&["990", "1004", "1.004"]), None);
+    }
 
     #[test]
     fn numbers_of_all_kinds() {

@@ -71,12 +71,14 @@ pub fn read(text: &str) -> Option<Stamp> {
     }
     if let Some((first, rest)) = text.split_once(['T', ' ', '_'])
         && let (Some(date), Some(clock)) = (date(first), clock(rest.trim_start()))
+        && clock <= DAY
     {
         return Some(Stamp { date: Some(date), clock: Some(clock), two: false });
     }
     let two = text.bytes().filter(|byte| *byte == b':').count() == 1
         && text.bytes().all(|byte| byte.is_ascii_digit() || byte == b':');
-    clock(text).map(|clock| Stamp { date: None, clock: Some(clock), two })
+    let clock = clock(text).filter(|clock| two || *clock <= DAY);
+    clock.map(|clock| Stamp { date: None, clock: Some(clock), two })
 }
 
 fn date(text: &str) -> Option<Date> {
@@ -117,14 +119,18 @@ fn clock(text: &str) -> Option<i64> {
     };
     let hour = two(parts.next()?)?;
     let minute = two(parts.next()?)?;
-    let (second, fraction) = match parts.next() {
+    let third = parts.next();
+    let two_numbers = third.is_none();
+    let (second, fraction) = match third {
         None => (0, 0),
         Some(text) => match text.split_once(['.', ',']) {
             None => (two(text)?, 0),
             Some((whole, fraction)) => (two(whole)?, nanoseconds(fraction)?),
         },
     };
-    if parts.next().is_some() || hour > 24 || minute > 59 || second > 60 {
+    // Of two numbers, the first may be minutes.
+    let most = if two_numbers && half.is_none() { 59 } else { 24 };
+    if parts.next().is_some() || hour > most || minute > 59 || second > 60 {
         return None;
     }
     let hour = match half {
@@ -167,7 +173,10 @@ fn nanoseconds(digits: &str) -> Option<i64> {
 /// Nothing is said, and no other stamp of the column has a date or seconds.
 pub fn settle(stamps: &mut [Option<Stamp>], options: &Options) -> Result<(), Unclear> {
     let all = || stamps.iter().flatten().filter(|stamp| stamp.date.is_none());
-    match options.clock {
+    // No day has more hours.
+    let beyond = |stamp: &Stamp| stamp.two && stamp.clock.is_some_and(|clock| clock > DAY);
+    let minutes = all().any(beyond).then_some(ClockForm::MinutesSeconds);
+    match options.clock.or(minutes) {
         _ if !all().any(|stamp| stamp.two) => {}
         Some(ClockForm::MinutesSeconds) => {
             for stamp in stamps.iter_mut().flatten().filter(|stamp| stamp.two) {
@@ -242,6 +251,21 @@ mod tests {
         Some((days * DAY + stamp.clock.unwrap_or(0)) as f64 / NANOSECONDS as f64)
     }
 
+    /// More than a day of hours can only be minutes; with a date they are no time.
+    #[test]
+    fn two_numbers_beyond_a_day_are_minutes() {
+        let seconds = |texts: &[&str]| {
+            let mut stamps: Vec<Option<Stamp>> = texts.iter().map(|text| read(text)).collect();
+            settle(&mut stamps, &Options::default()).ok()?;
+            let clock = |stamp: &Option<Stamp>| Some(stamp.as_ref()?.clock? / NANOSECONDS);
+            stamps.iter().map(clock).collect::<Option<Vec<i64>>>()
+        };
+        assert_eq!(seconds(&["24:59", "25:00", "59:59"]), Some(vec![1499, 1500, 3599]));
+        assert_eq!(seconds(&["00:01", "24:00"]), None);
+        assert!(read("2026-01-01 25:00").is_none() && read("60:00").is_none());
+        assert!(read("25:00:00").is_none());
+    }
+
     #[test]
     fn stamps_of_all_kinds() {
         // Seconds since 1970 by `date -u -d ... +%s`.
@@ -266,7 +290,7 @@ mod tests {
             "1.5",
             "13.05.24",
             "2024-02-30",
-            "25:00",
+            "60:00",
             "12:60",
             "12:1:2:3",
             "a12:00",

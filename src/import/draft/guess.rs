@@ -1,5 +1,7 @@
 //! Which channel of the protocol a channel of a file may be: by name, and by what is in it.
 
+use indexmap::IndexSet;
+
 use super::look::{Look, short};
 use super::names::{Names, all_channels};
 use crate::import::mapping::{Common, Convention};
@@ -27,7 +29,7 @@ const CLEARLY: f64 = 4.0;
 /// A mean this share above the median of its group is told.
 const ABOVE: f64 = 1.03;
 
-/// Letters and digits in lower case; `*` and `.` stand for derivatives and are kept.
+/// Letters and digits in lower case; `*` stands for a derivative and is kept.
 fn plain(name: &str) -> String {
     name.to_lowercase()
         .chars()
@@ -71,7 +73,7 @@ impl<'a> Named<'a> {
     }
 
     /// The channels of the convention.
-    fn channels(&self) -> Vec<String> {
+    fn channels(&self) -> IndexSet<String> {
         let whole = self.convention.names.0.iter().map(|(name, _)| name.text.clone());
         whole.chain(all_channels(self.convention)).collect()
     }
@@ -184,7 +186,7 @@ pub fn guesses(named: Named<'_>, needs: &[&ChannelNeed]) -> Vec<Guess> {
     let Named { looks, convention, .. } = named;
     let mut guesses: Vec<Guess> = needs.iter().map(|need| guess_channel(named, need)).collect();
     let axes = ["time", "distance", "speed"];
-    let channels: Vec<String> = named.channels();
+    let channels = named.channels();
     let names = || channels.iter();
     for name in names().filter(|name| {
         !axes.contains(&name.as_str()) && !needs.iter().any(|need| need.column == **name)

@@ -35,6 +35,17 @@ pub struct Names {
 /// A name in words, in lower case. Two dots, stars, strokes and accents that follow a letter belong
 /// to it: `y..`, `z*`, `y''`. So does a `$` before one.
 fn words(name: &str) -> Vec<String> {
+    // File systems and programs of macOS write accents apart.
+    const APART: [(&str, &str); 7] = [
+        ("a\u{308}", "ä"),
+        ("o\u{308}", "ö"),
+        ("u\u{308}", "ü"),
+        ("y\u{308}", "ÿ"),
+        ("e\u{301}", "é"),
+        ("e\u{300}", "è"),
+        ("a\u{302}", "â"),
+    ];
+    let name = APART.iter().fold(name.to_owned(), |name, (two, one)| name.replace(two, one));
     let mut all: Vec<String> = Vec::new();
     let mut word = String::new();
     let letters: Vec<char> = name.chars().collect();
@@ -128,6 +139,17 @@ impl<'c> Vocabulary<'c> {
         Self { convention, quantities, places, nothing, known }
     }
 
+    /// Whether a word by itself says what is recorded.
+    fn is_of_quantity(&self, word: &str) -> bool {
+        let own = |of: &OfQuantity<'_>| of.phrases.iter().any(|phrase| *phrase == [word]);
+        self.quantities.iter().any(own)
+    }
+
+    fn is_of_place(&self, word: &str) -> bool {
+        let own = |of: &OfPlace| of.words.contains(word) || of.members.contains_key(word);
+        self.places.values().any(own)
+    }
+
     /// The words of a name; one that is not known, but is two known ones without a gap, is those.
     fn words(&self, name: &str) -> Vec<String> {
         let apart = |word: String| -> Vec<String> {
@@ -135,7 +157,11 @@ impl<'c> Vocabulary<'c> {
                 return vec![word];
             }
             let cuts = word.char_indices().skip(1).map(|(at, _)| word.split_at(at));
-            let known = |(a, b): &(&str, &str)| self.known.contains(*a) && self.known.contains(*b);
+            // One says what is recorded, the other where.
+            let known = |(a, b): &(&str, &str)| {
+                self.is_of_quantity(a) && self.is_of_place(b)
+                    || self.is_of_place(a) && self.is_of_quantity(b)
+            };
             match cuts.filter(known).collect::<Vec<_>>()[..] {
                 [(a, b)] => vec![a.to_owned(), b.to_owned()],
                 _ => vec![word],
@@ -275,8 +301,10 @@ pub fn all_channels(convention: &Convention) -> Vec<String> {
     convention.quantities.iter().flat_map(of_quantity).collect()
 }
 
-/// Share of the names of a file that have a word, above which it says nothing of a single channel.
+/// Share of the names of a file that have a word, above which it says nothing of a single channel,
+/// in a file with so many names.
 const COMMON: f64 = 0.5;
+const SEVERAL: usize = 4;
 
 impl Names {
     pub fn read(looks: &[Look], convention: &Convention) -> Self {
@@ -289,9 +317,12 @@ impl Names {
                 *often.entry(word).or_default() += 1;
             }
         }
-        let many = COMMON * all.len() as f64;
+        let (all_names, many) = (all.len(), COMMON * all.len() as f64);
         let says_nothing = |(word, count): (&&String, &usize)| {
-            *count as f64 > many && !vocabulary.known.contains(*word) && !is_number(word)
+            all_names >= SEVERAL
+                && *count as f64 > many
+                && !vocabulary.known.contains(*word)
+                && !is_number(word)
         };
         let common: BTreeSet<String> = often
             .iter()
@@ -310,8 +341,6 @@ impl Names {
         let mut names = Self { readings, orders: Vec::new(), decided: None };
         names.orders = names.possible(convention.orders.len());
         names.keep(&names.orders.clone());
-        names.exclude();
-        names.drop_odd();
         names
     }
 
@@ -335,16 +364,20 @@ impl Names {
         }
     }
 
-    /// The orders in which every name with bare digits stands for a channel of its own.
+    /// The orders in which every name with bare digits stands for a channel of its own, which no
+    /// other name says without them. A name that stands in several tables counts once.
     fn possible(&self, orders: usize) -> Vec<usize> {
         let by_digits = |all: &&Vec<Reading>| all.iter().any(|one| one.order.is_some());
-        let bare: Vec<&Vec<Reading>> = self.readings.iter().filter(by_digits).collect();
+        let bare: BTreeSet<&Vec<Reading>> = self.readings.iter().filter(by_digits).collect();
+        let sure: BTreeSet<&str> =
+            self.sure().filter(|(at, _)| !self.is_by_digits(*at)).map(|(_, name)| name).collect();
         let fits = |order: &usize| {
             let in_order = |one: &&Reading| one.order == Some(*order);
             let channels: Vec<&Reading> =
                 bare.iter().filter_map(|all| all.iter().find(in_order)).collect();
-            let once: BTreeSet<&String> = channels.iter().map(|one| &one.channel).collect();
-            !bare.is_empty() && channels.len() == bare.len() && once.len() == channels.len()
+            let once: BTreeSet<&str> = channels.iter().map(|one| one.channel.as_str()).collect();
+            let each = channels.len() == bare.len() && once.len() == channels.len();
+            !bare.is_empty() && each && once.is_disjoint(&sure)
         };
         (0..orders).filter(fits).collect()
     }
@@ -355,6 +388,8 @@ impl Names {
             all.retain(|one| one.order.is_none_or(|order| orders.contains(&order)));
         }
         self.orders = orders.to_vec();
+        self.exclude();
+        self.drop_odd();
     }
 
     /// Drops readings as channels for which another name has no other meaning.
@@ -366,7 +401,9 @@ impl Names {
             };
             let sure: BTreeSet<String> = self.readings.iter().filter_map(sure).collect();
             let mut changed = false;
-            for all in self.readings.iter_mut().filter(|all| all.len() > 1) {
+            // Orders of digits are all or none.
+            let several = |all: &&mut Vec<Reading>| all.len() > 1 && all[0].order.is_none();
+            for all in self.readings.iter_mut().filter(several) {
                 let before = all.len();
                 all.retain(|one| !sure.contains(&one.channel));
                 changed |= all.len() != before;
@@ -452,6 +489,7 @@ mod tests {
             "Y_1R min",
         ] {
             assert_eq!(read(&[name, "Zeit"])[0], Vec::<String>::new(), "{name}");
+            assert_eq!(read(&[name])[0], Vec::<String>::new(), "{name}");
         }
         // One wheel on each side in turn: numbers of wheels.
         let wheels = ["Y 1 R", "Y 2 L", "Y 3 R", "Y 4 L"];
@@ -462,6 +500,12 @@ mod tests {
         assert_eq!(read(&["Y12", "Y11"])[0].len(), 3);
         let side_first = read(&["Y11", "Y21", "Y14", "Y24"]);
         assert_eq!(side_first, [["Y_1R"], ["Y_1L"], ["Y_4R"], ["Y_4L"]]);
+        // By every order, one of them is the channel that another name says without digits.
+        let beside = read(&["Y_1R", "Y11", "Y12", "Y21", "Y22"]);
+        assert_eq!(beside[0], ["Y_1R"]);
+        assert!(beside[1..].iter().all(Vec::is_empty), "{beside:?}");
+        let beside = read(&["Y_1R", "Y_1L", "Y12", "Y22", "Y13", "Y23"]);
+        assert_eq!(beside[2..], [["Y_2R"], ["Y_2L"], ["Y_3R"], ["Y_3L"]]);
         // Both are the same channel: the draft leaves it open.
         assert_eq!(read(&["Y_1R", "Fy ws1 right"]), [["Y_1R"], ["Y_1R"]]);
     }
@@ -477,5 +521,6 @@ mod tests {
         assert_eq!(of("LatForceWs2Right"), "lat force ws 2 right");
         assert_eq!(of("vehicle.ws1.Y_R [kN]"), "vehicle ws 1 y r kn");
         assert_eq!(of("y'' DG1"), "y'' dg 1");
+        assert_eq!(of("Fu\u{308}hrungskraft Y"), "führungskraft y");
     }
 }

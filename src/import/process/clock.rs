@@ -214,8 +214,11 @@ fn increasing(
     })
 }
 
+/// By which share of a step the row before an event comes before its time.
+const BEFORE_AN_EVENT: f64 = 1e-6;
+
 /// Rows that have the time of the row after them, as simulation programs write an event: before and
-/// after it. The row before comes to the double before that time, so that the later one counts.
+/// after it. The row before comes a little earlier, so that the later one counts.
 fn events(times: &mut [f64]) -> usize {
     if rounded(times).is_some() {
         return 0;
@@ -225,7 +228,11 @@ fn events(times: &mut [f64]) -> usize {
     for at in (0..times.len()).rev() {
         let time = times[at];
         if time == later {
-            times[at] = times[at + 1].next_down();
+            let step = match at.checked_sub(1) {
+                Some(before) => time - times[before],
+                None => times.get(at + 2).map_or(0.0, |next| next - time),
+            };
+            times[at] = times[at + 1] - (BEFORE_AN_EVENT * step).max(f64::MIN_POSITIVE);
             found += 1;
         }
         later = time;

@@ -9,7 +9,7 @@ use crate::report::{
     rules,
 };
 use crate::result::{
-    CampaignInfo, Certification, Kind, ProtocolInfo, QuantityResult, Removed, Verdict,
+    CampaignInfo, Certification, Kind, ProtocolInfo, QuantityResult, Reason, Removed, Verdict,
 };
 
 /// Reasons on the cover, and where a table of verdicts takes their room; the summary lists all.
@@ -184,11 +184,16 @@ fn verdicts_with_a_name(view: &View<'_>) -> Vec<Block> {
 fn identification(view: &View<'_>) -> Vec<Block> {
     let (campaign, protocol) = (&view.found.campaign, &view.found.protocol);
     let stated = identity::on_cover(&campaign.report);
-    let drawn = view.found.drawn.iter().filter(|drawn| drawn.verdict.is_none());
+    // Of a rule that does not hold, a reason tells it.
+    let drawn = view.found.drawn.iter();
+    let drawn = drawn.filter(|one| one.verdict.is_none() && one.holds() == Some(true));
     let rules = facts([
         ("Protocol", (&protocol.name).into()),
         ("Verdict rule", (&protocol.verdict_rule).into()),
-        ("Draws", Text::lines(drawn.map(|drawn| drawn.text().to_string().into()))),
+        (
+            "Draws",
+            Text::lines(drawn.map(|one| Reason::InDraws(one.clone()).text().to_string().into())),
+        ),
         ("Source", (&protocol.source).into()),
     ]);
     let hash = Fact::new("Protocol hash", Run::Hash(protocol.sha256.clone()));

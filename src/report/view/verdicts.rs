@@ -2,7 +2,7 @@
 
 use super::View;
 use crate::report::{document::*, number};
-use crate::result::{Certification, Outcome, Reason, ShortZone, Verdict, VerdictResult};
+use crate::result::{Certification, InDraws, Outcome, Reason, ShortZone, Verdict, VerdictResult};
 
 /// All verdicts with a name; a short table has not all of their reasons.
 pub fn table(view: &View<'_>, short: bool) -> Table {
@@ -16,10 +16,16 @@ pub fn table(view: &View<'_>, short: bool) -> Table {
     let row = |verdict: &VerdictResult| {
         let title = verdict.title.clone() + if verdict.overall { " (overall)" } else { "" };
         let places = [&verdict.clause, &verdict.source].into_iter().flatten();
-        let own = found.drawn.iter().filter(|one| one.verdict.as_ref() == Some(&verdict.name));
-        let rule = std::iter::once(Text::from(&verdict.criterion))
-            .chain(own.map(|drawn| Run::Quiet(drawn.text().to_string()).into()))
-            .chain(places.map(|place| Run::Quiet(place.clone()).into()));
+        let of_this = |one: &&InDraws| {
+            one.verdict.as_ref() == Some(&verdict.name) && one.holds() == Some(true)
+        };
+        let own = found.drawn.iter().filter(of_this);
+        let rule =
+            std::iter::once(Text::from(&verdict.criterion))
+                .chain(own.map(|drawn| {
+                    Run::Quiet(Reason::InDraws(drawn.clone()).text().to_string()).into()
+                }))
+                .chain(places.map(|place| Run::Quiet(place.clone()).into()));
         let notes = verdict.notes.iter().map(|note| view.symbols.text(note));
         let says = merged(&verdict.reasons, found).into_iter().map(reason).chain(notes).collect();
         let finding = finding(verdict.outcome, &verdict.word);

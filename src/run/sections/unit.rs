@@ -32,11 +32,11 @@ pub struct Unit {
     /// Name of the first section of the site.
     pub site_name: String,
     /// Index of the section that it repeats.
+    pub original: Option<usize>,
     /// In a draw of sections with repetition, how often it was drawn before: each is a unit of its
     /// own there.
     #[serde(skip)]
     pub copy: usize,
-    pub original: Option<usize>,
     /// `None` for a whole record.
     pub extent: Option<Extent>,
     /// Of a section of a run: what is read for it and its neighbours.

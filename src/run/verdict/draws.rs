@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use indexmap::IndexMap;
 use rayon::prelude::*;
 
-use super::quantities::of_rows;
+use super::quantities::{Tells, of_rows};
 use crate::check::plan::Plan;
 use crate::metrics::cluster::{Draws, REPLICATES, SEED};
 use crate::result::{QuantityResult, Reason};
@@ -52,18 +52,22 @@ impl Sample<'_> {
         let sections: Vec<&Vec<usize>> = strata.values().flat_map(IndexMap::values).collect();
         let draws = Draws::within(&sizes, REPLICATES, SEED).map_err(Reason::method)?;
         let draws: Vec<&[usize]> = draws.iter().collect();
-        let times = |draw: &[usize], unit: usize| draw.iter().filter(|one| **one == unit).count();
-        let most = |draw: &&[usize]| draw.iter().map(|unit| times(draw, *unit)).max().unwrap_or(0);
-        let most = draws.iter().map(most).max().unwrap_or(0);
+        let times = |draw: &&[usize]| {
+            let mut times = vec![0; sections.len()];
+            draw.iter().for_each(|unit| times[*unit] += 1);
+            times
+        };
+        let draws: Vec<Vec<usize>> = draws.iter().map(times).collect();
+        let most = draws.iter().flatten().max().copied().unwrap_or(0);
         let copies: Vec<Vec<Unit>> = (0..most)
             .map(|copy| used.iter().map(|(unit, _)| unit.drawn_again(copy)).collect())
             .collect();
         let reasons: Vec<Option<Reason>> =
             Rows::of_all(plan, facts, used).into_iter().map(|rows| rows.reason).collect();
-        let in_draw = |draw: &&[usize]| {
+        let in_draw = |times: &Vec<usize>| {
             let mut drawn = Vec::new();
-            for (unit, of_unit) in sections.iter().enumerate() {
-                for copies in &copies[..times(draw, unit)] {
+            for (of_unit, times) in sections.iter().zip(times) {
+                for copies in &copies[..*times] {
                     drawn.extend(of_unit.iter().map(|&at| (&copies[at], used[at].1)));
                 }
             }
@@ -71,7 +75,7 @@ impl Sample<'_> {
                 Rows::drawn(plan, at, &drawn, reason.clone())
             };
             let all: Vec<Rows<'_>> = reasons.iter().enumerate().map(rows).collect();
-            find(&of_rows(plan, facts, &all, about.iter().copied()))
+            find(&of_rows(plan, facts, &all, Tells::Limits, about.iter().copied()))
         };
         Ok(OfDraws { found: draws.par_iter().map(in_draw).collect(), units: sections.len() })
     }

@@ -20,7 +20,16 @@ pub fn of_quantities(
     used: &Used<'_>,
     which: impl IntoIterator<Item = usize>,
 ) -> Vec<(QuantityResult, Vec<Reason>)> {
-    of_rows(plan, facts, &Rows::of_all(plan, facts, used), which)
+    of_rows(plan, facts, &Rows::of_all(plan, facts, used), Tells::All, which)
+}
+
+/// What a result tells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tells {
+    /// Values, limits and reports.
+    All,
+    /// What its limits come to.
+    Limits,
 }
 
 /// The same from the rows of all quantities.
@@ -28,13 +37,14 @@ pub fn of_rows(
     plan: &Plan,
     facts: &Facts,
     all: &[Rows<'_>],
+    tells: Tells,
     which: impl IntoIterator<Item = usize>,
 ) -> Vec<(QuantityResult, Vec<Reason>)> {
     let table: Vec<_> = all.iter().map(Rows::usable).collect();
     let of_quantity = |at: usize| {
         let (quantity, Rows { members, too_few, reason }) = (&plan.quantities[at], &all[at]);
         let rows = Group { plan, facts, quantity: Some(quantity), members, table: &table };
-        quantity_result(&Judging { quantity, rows, too_few }, reason.clone())
+        quantity_result(&Judging { quantity, rows, too_few }, tells, reason.clone())
     };
     which.into_iter().map(of_quantity).collect()
 }
@@ -47,7 +57,11 @@ fn outcome(quantity: &Quantity, statistics: &[StatisticResult]) -> Option<String
 }
 
 /// The result, and a reason for each limit that is not met.
-fn quantity_result(judging: &Judging<'_>, reason: Option<Reason>) -> (QuantityResult, Vec<Reason>) {
+fn quantity_result(
+    judging: &Judging<'_>,
+    tells: Tells,
+    reason: Option<Reason>,
+) -> (QuantityResult, Vec<Reason>) {
     let (quantity, Group { plan, members, .. }) = (judging.quantity, judging.rows);
     let (mut statistics, mut fails) = (Vec::new(), Vec::new());
     // The limit of each row that has one of its own, and the share; of several the largest share.
@@ -98,7 +112,10 @@ fn quantity_result(judging: &Judging<'_>, reason: Option<Reason>) -> (QuantityRe
         limit: limit_of(member).map(|(limit, _)| show(*limit)),
         ratio: limit_of(member).and_then(|(_, share)| *share),
     };
-    let values: Vec<PairValue> = members.iter().map(value).collect();
+    let values: Vec<PairValue> = match tells {
+        Tells::All => members.iter().map(value).collect(),
+        Tells::Limits => Vec::new(),
+    };
     let result = QuantityResult {
         outcome: outcome(quantity, &statistics),
         id: quantity.id.clone(),
@@ -143,7 +160,10 @@ fn quantity_result(judging: &Judging<'_>, reason: Option<Reason>) -> (QuantityRe
             _ => None,
         },
         statistics,
-        reported: reports::of_quantity(judging),
+        reported: match tells {
+            Tells::All => reports::of_quantity(judging),
+            Tells::Limits => Vec::new(),
+        },
         n: count_independent(plan, members),
         values,
         holds,

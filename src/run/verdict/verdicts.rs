@@ -2,13 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use indexmap::IndexMap;
+use indexmap::{IndexMap, IndexSet};
 
 use super::draws::{OfDraws, Sample};
 use crate::check::plan::{Decision, Over, Plan, Rule};
 use crate::result::{
-    GivenVerdict, InDraws, OftenNotMet, Outcome, QuantityResult, Reason, StatisticName, Subject,
-    VerdictResult,
+    GivenVerdict, InDraws, OftenNotMet, Outcome, QuantityResult, Reason, Scope, StatisticName,
+    StatisticResult, Subject, VerdictResult,
 };
 use crate::run::limit::rule_place;
 
@@ -100,9 +100,13 @@ fn by(
             let found: Vec<Found<'_>> = quantities.iter().map(of).collect();
             let once = by_limits(plan, &given.barred, *rule, quantities, &found);
             match draws {
-                Some(share) if once.outcome.holds().is_some() => {
-                    in_draws(plan, given.sample, (*rule, quantities), *share, once.reasons)
-                }
+                Some(share) if once.outcome.holds().is_some() => in_draws(
+                    plan,
+                    given.sample,
+                    (*rule, quantities),
+                    *share,
+                    (&found, once.reasons),
+                ),
                 _ => once,
             }
         }
@@ -170,14 +174,29 @@ pub fn drawn(plan: &Plan, decided: &[Decided]) -> Vec<InDraws> {
 /// A result of a quantity, and a reason for each limit that is not met.
 type Found<'q> = (&'q QuantityResult, &'q [Reason]);
 
+/// A scope with the names that sections and sites have in the campaign.
+fn drawn_once(scope: &Scope) -> Scope {
+    let mut scope = scope.clone();
+    for (key, member) in &mut scope.keys {
+        if ["section", "site"].contains(&key.as_str())
+            && let Some((name, copy)) = member.rsplit_once(" (")
+            && copy.trim_end_matches(')').bytes().all(|byte| byte.is_ascii_digit())
+        {
+            *member = name.to_owned();
+        }
+    }
+    scope
+}
+
 /// A rule over limits in draws of the sections. It holds in so many of them, or does not, whatever
-/// those come to in which a limit has no value. `once` are the reasons of the sections as they are.
+/// those come to in which a limit has no value, or a group that it is for has no section. `whole` and
+/// `once` are the quantities and the reasons of the sections as they are.
 fn in_draws(
     plan: &Plan,
     sample: Option<Sample<'_>>,
     (rule, about): (Rule, &[usize]),
     share: f64,
-    mut once: Vec<Reason>,
+    (whole, mut once): (&[Found<'_>], Vec<Reason>),
 ) -> Decided {
     let judge = |quantities: &[(QuantityResult, Vec<Reason>)]| {
         let found: Vec<Found<'_>> =
@@ -185,12 +204,22 @@ fn in_draws(
         let decided = by_limits(plan, &[], rule, about, &found);
         let limits = |(result, _): &Found<'_>| {
             let failed = result.statistics.iter().filter(|one| one.holds == Some(false));
-            let of = failed.map(|one| (result.id.clone(), one.title.clone(), one.scope.told()));
+            let scope = |one: &StatisticResult| drawn_once(&one.scope).told();
+            let of = failed.map(|one| (result.id.clone(), one.title.clone(), scope(one)));
             of.collect::<Vec<_>>()
         };
-        let undefined = decided.outcome.holds().is_none();
-        let first = decided.reasons.into_iter().next().filter(|_| undefined);
-        (decided.outcome.holds(), found.iter().flat_map(limits).collect::<Vec<_>>(), first)
+        let failed: IndexSet<_> = found.iter().flat_map(limits).collect();
+        let lacks = |((all, _), (some, _)): (&Found<'_>, &Found<'_>)| {
+            some.statistics.len() < all.statistics.len()
+        };
+        let reason = decided.reasons.into_iter().next();
+        match decided.outcome.holds() {
+            Some(true) if whole.iter().zip(&found).any(lacks) => {
+                (None, failed, Some(Reason::NoValueInGroup))
+            }
+            None => (None, failed, reason),
+            holds => (holds, failed, None),
+        }
     };
     let found = sample.ok_or(Reason::DrawsNeedValues).and_then(|one| one.each(about, judge));
     let OfDraws { found, units } = match found {
@@ -202,7 +231,7 @@ fn in_draws(
     for limit in found.iter().flat_map(|(_, failed, _)| failed) {
         *often.entry(limit).or_default() += 1;
     }
-    // Of several the first of the protocol.
+    // Of several the one that fails first.
     let often = often.into_iter().rev().max_by_key(|(_, draws)| *draws);
     let drawn = InDraws {
         verdict: None,
@@ -218,17 +247,18 @@ fn in_draws(
             draws,
         }),
     };
-    let told = Box::new(drawn.clone());
+    let told = Reason::InDraws(drawn.clone());
     let decided = match drawn.holds() {
-        Some(true) => Decided::holds(),
-        Some(false) => {
-            once.insert(0, Reason::TooFewDraws { drawn: told });
+        // A rule that the sections as they are do not meet holds in no share of draws.
+        Some(true) if once.is_empty() => Decided::holds(),
+        Some(_) => {
+            once.insert(0, told);
             Decided::fails(once)
         }
         None => {
             let first = found.iter().find_map(|(.., reason)| reason.clone());
-            let reason = Box::new(first.unwrap_or(Reason::NoValue));
-            Decided::not_assessable(vec![Reason::DrawsUndefined { drawn: told, reason }])
+            let second = Box::new(first.unwrap_or(Reason::NoValueInGroup));
+            Decided::not_assessable(vec![Reason::Both { first: Box::new(told), second }])
         }
     };
     Decided { drawn: vec![drawn], ..decided }
