@@ -153,7 +153,7 @@ impl Checker<'_> {
     }
 
     /// A confidence level, from 0 to 1.
-    pub fn confidence(&mut self, written: &Phrase) -> Option<f64> {
+    fn confidence(&mut self, written: &Phrase) -> Option<f64> {
         let share = self.constant_of("confidence", Dimension::ONE, "a share", written)?;
         if (LEAST_CONFIDENCE..1.0).contains(&share) {
             return Some(share);

@@ -22,6 +22,10 @@ struct Names {
     first: usize,
 }
 
+/// Smallest share of draws in which a rule may have to hold: a rule that fails in most of them is
+/// usually one whose share was written the wrong way round.
+const LEAST_DRAWS: f64 = 0.5;
+
 /// Every limit of some quantities.
 fn every(quantities: Vec<usize>) -> Decision {
     Decision::Limits { rule: Rule::EveryLimit, quantities, draws: None }
@@ -339,7 +343,14 @@ impl Checker<'_> {
                         leave out `in ... of draws`";
             return self.refuse(problem.also(share, "the rule of the verdict").help(help));
         }
-        self.confidence(share)
+        let found = self.constant_of("share of draws", Dimension::ONE, "a share", share)?;
+        if (LEAST_DRAWS..1.0).contains(&found) {
+            return Some(found);
+        }
+        let says = "a share of draws must be at least 50 % and below 100 %";
+        let at = self.set_at(share);
+        let help = "write it as a percentage: `95 %`";
+        self.refuse(error("out-of-range", says, share).also_if(at, "its value").help(help))
     }
 
     /// A whole number, not larger than the number of things there are.

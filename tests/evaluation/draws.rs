@@ -118,7 +118,9 @@ fn rules_that_cannot_be_drawn_are_refused() {
     assert!(twice.contains("error[interval-of-draws]"), "{twice}");
     assert!(twice.contains("count the scatter between the sections twice"), "{twice}");
     let share = says("in 90 %", "in 110 %");
-    assert!(share.contains("must be at least 50 % and below 100 %"), "{share}");
+    let range = "a share of draws must be at least 50 % and below 100 %";
+    assert!(share.contains(range), "{share}");
+    assert!(says("in 90 %", "in 40 %").contains(range));
     let written = says("in 90 % of draws", "in 90 % of draw");
     assert!(written.contains("expected `in 95 % of draws`"), "{written}");
 }
